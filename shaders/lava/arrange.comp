@@ -33,6 +33,9 @@ layout(set = 0, binding = 5, std430) buffer Reached {
 
 void main() {
     uint at = element(64u);
+    if (at < cells.pieces) {
+        reached.list[at] = at == 0u ? 2u : 0u;
+    }
     if (at >= cells.particles) {
         return;
     }
@@ -41,7 +44,4 @@ void main() {
     xs.list[at] = position_m.x;
     ys.list[at] = position_m.y;
     zs.list[at] = position_m.z;
-    if (at < cells.pieces) {
-        reached.list[at] = at == 0u ? 2u : 0u;
-    }
 }

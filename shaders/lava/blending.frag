@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants HEAT=height,carried
+
 // Numerator and denominator of eq. 7.2: the lava's colour times the Gaussian in RGB, the Gaussian in alpha. A fragment
 // is blended exactly when its depth is less than epsilon behind the nearest. The colour c_i belongs to the splat: height
 // and rock are those of its centre.
@@ -28,7 +30,7 @@ void main() {
     if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest || center_m.y <= scene.bare_m) {
         discard;
     }
-    vec3 color = color_of(center_m.y, rock_at(center_m.xz));
+    vec3 color = color_of(center_m, rock_at(center_m.xz));
     if (shading.mode == NORMALS) {
         ivec2 column = ivec2(clamp(center_m.xz / scene.space_m.xz * scene.columns, vec2(0.0), scene.columns - 1.0));
         color = 0.5 + 0.5 * texelFetch(normal_height, column, 0).xyz;

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants HEAT=height,carried
+
 // A ray for each pixel against the height field, in place of splats. It begins where it comes below the highest place, goes
 // from cell to cell, and in a cell to the exact
 // crossing with the bilinear patch, whose height above a ray is a quadratic. The sheet is seen from both sides, as splats
@@ -174,7 +176,7 @@ void main() {
             rock += rock_at(tap_m.xz + hit.side.xz * (surface.w - tap_m.y));
         }
     }
-    vec3 color = color_of(place_m.y, rock / (taps.x * taps.y));
+    vec3 color = color_of(place_m, rock / (taps.x * taps.y));
     accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color, 1.0);
     gl_FragDepth = (hit.t + scene.epsilon_m) * scene.depth_per_m;
 }

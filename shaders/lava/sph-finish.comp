@@ -1,6 +1,7 @@
 #version 450
 
-// The step's end: velocities from the places, both into the textures at the particles' numbers.
+// The step's end: velocities from the places, both into the textures at the particles' numbers, with
+// temperatures and rates of strain.
 
 layout(local_size_x = 64) in;
 
@@ -15,9 +16,17 @@ layout(set = 0, binding = 5, std430) readonly buffer Items {
     uvec2 list[]; // cell and particle, by cells
 } items;
 
-layout(set = 0, binding = 6, rgba32f) uniform image2D positions;
+layout(set = 0, binding = 6, std430) readonly buffer Heat {
+    vec2 list[]; // kelvin as the step ends, and the steepness of a particle's face
+} heat;
 
-layout(set = 0, binding = 7, rgba32f) uniform image2D velocities;
+layout(set = 0, binding = 9, std430) readonly buffer Change {
+    vec4 list[]; // the rate of strain per second in the fourth component
+} change;
+
+layout(set = 0, binding = 7, rgba32f) uniform image2D positions;
+
+layout(set = 0, binding = 8, rgba32f) uniform image2D velocities;
 
 void main() {
     uint at = element(64u);
@@ -29,6 +38,6 @@ void main() {
     vec3 place_m = predicted.list[at].xyz;
     vec2 turns = flow.periodic * floor(place_m.xz / flow.space_m.xz);
     vec3 within = vec3(place_m.x - turns.x * flow.space_m.x, place_m.y, place_m.z - turns.y * flow.space_m.z);
-    imageStore(positions, texel, vec4(within, 0.0));
-    imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, 0.0));
+    imageStore(positions, texel, vec4(within, change.list[at].w));
+    imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, heat.list[at].x));
 }

@@ -1,6 +1,7 @@
 #version 450
 
-// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess.
+// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess. Temperatures and the
+// rates of strain that the last step left come with them.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -16,7 +17,7 @@ layout(set = 0, binding = 5, std430) readonly buffer Items {
 } items;
 
 layout(set = 0, binding = 6, std430) buffer Pushed {
-    vec4 list[]; // metres per second
+    vec4 list[]; // metres per second, and kelvin as the step begins
 } pushed;
 
 layout(set = 0, binding = 7, std430) buffer To {
@@ -24,8 +25,10 @@ layout(set = 0, binding = 7, std430) buffer To {
 } to;
 
 layout(set = 0, binding = 8, std430) buffer Change {
-    vec4 list[]; // metres per second
+    vec4 list[]; // metres per second, and the rate of strain per second
 } change;
+
+layout(set = 0, binding = 9) uniform texture2D positions;
 
 void main() {
     uint at = element(64u);
@@ -33,9 +36,10 @@ void main() {
         return;
     }
     uint particle = items.list[at].y;
-    vec3 velocity = texelFetch(velocities, ivec2(particle % flow.width, particle / flow.width), 0).xyz;
-    vec4 after = vec4(velocity + flow.time_step_s * flow.gravity_m_s2, 0.0);
+    ivec2 texel = ivec2(particle % flow.width, particle / flow.width);
+    vec4 before = texelFetch(velocities, texel, 0);
+    vec4 after = before + vec4(flow.time_step_s * flow.gravity_m_s2, 0.0);
     pushed.list[at] = after;
     to.list[at] = after;
-    change.list[at] = vec4(0.0);
+    change.list[at] = vec4(vec3(0.0), texelFetch(positions, texel, 0).w);
 }

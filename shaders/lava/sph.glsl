@@ -16,6 +16,15 @@ layout(push_constant, std430) uniform Flow {
     float gained; // of the residual
     float margin_m; // no particle comes nearer to a wall
     float periodic; // 1 where x and z have no walls but repeat
+    float laplacian; // of a particle as `volume`, but so that a lattice has the Laplacian of a parabola
+    float conduction; // of two particles: twice step, diffusivity and that volume, per h^2
+    float given; // of a particle's warmth over its face's, that which goes there in a step, by the steepness
+    float radiance; // of a face over what reaches it from the particle's middle for each kelvin, per K^3
+    float ambient_k;
+    float melt_k; // where the lava has the viscosity that `drag` is made of
+    float solidus_k;
+    float per_viscosity; // 1 over that viscosity
+    float stiffest; // most of that viscosity that crust and cold lava have
 } flow;
 
 layout(set = 0, binding = 0, std430) readonly buffer Starts {
@@ -112,16 +121,27 @@ float wall_drag(Walls walls) {
     return drag_beyond(walls.floor_q) + drag_beyond(q.x) + drag_beyond(q.y) + drag_beyond(q.z) + drag_beyond(q.w);
 }
 
-// The stretch of particles in the column of cells that is so far from a particle's, along y a cell to either side: none
-// beyond a wall. A periodic space has three cells along x and z at least.
-uvec2 stretch_at(vec3 place_m, int along_x, int along_z) {
+// The stretch of particles in the column of cells that is so far from a cell, from one height to another: none beyond a wall.
+// A periodic space has three cells along x and z at least.
+uvec2 stretch_of(ivec2 cell, ivec2 aside, int low, int high) {
     ivec3 counts = ivec3(flow.counts);
-    ivec3 cell = min(ivec3(place_m / flow.space_m * vec3(counts)), counts - 1);
-    ivec2 at = cell.xz + ivec2(along_x, along_z);
+    ivec2 at = cell + aside;
     ivec2 turned = ivec2((at.x + counts.x) % counts.x, (at.y + counts.z) % counts.z);
     int column = (turned.y * counts.x + turned.x) * counts.y;
-    uint first = starts.list[column + max(cell.y - 1, 0)];
-    uint end = starts.list[column + min(cell.y + 1, counts.y - 1) + 1];
+    uint first = starts.list[column + low];
+    uint end = starts.list[column + high + 1];
     bool is_there = at == turned || flow.periodic > 0.5;
     return uvec2(first, is_there ? end : first);
+}
+
+ivec3 cell_of(vec3 place_m) {
+    ivec3 counts = ivec3(flow.counts);
+    return min(ivec3(place_m / flow.space_m * vec3(counts)), counts - 1);
+}
+
+// That stretch around a particle, along y a cell to either side.
+uvec2 stretch_at(vec3 place_m, int along_x, int along_z) {
+    ivec3 cell = cell_of(place_m);
+    int highest = int(flow.counts.y) - 1;
+    return stretch_of(cell.xz, ivec2(along_x, along_z), max(cell.y - 1, 0), min(cell.y + 1, highest));
 }

@@ -69,7 +69,11 @@ impl ResultTable {
             for column in columns {
                 let value = |column: usize| row.get(column).and_then(Value::as_f64);
                 let Some(point) = value(x_column).zip(at(column).and_then(value)) else { continue };
-                let name = if columns.len() > 1 { format!("{}, {column}", names.join(" ")) } else { names.join(" ") };
+                let name = match (columns.len() > 1, names.is_empty()) {
+                    (true, true) => (*column).to_owned(),
+                    (true, false) => format!("{}, {column}", names.join(" ")),
+                    (false, _) => names.join(" "),
+                };
                 match series.iter_mut().find(|s| s.name == name) {
                     Some(line) => line.points.push(point),
                     None => series.push(Series { name, points: vec![point], reference: *column == "thesis" }),
@@ -129,5 +133,9 @@ mod tests {
             assert!(svg.contains(text), "{text} is missing");
         }
         assert!(!svg.contains("sphere, thesis"));
+        let rows = vec![vec![json!(1), json!(2), json!(3)], vec![json!(2), json!(3), json!(4)]];
+        let nameless = ResultTable { title: "Nameless", columns: &["time", "front", "back"], rows };
+        let svg = nameless.lines("time", "metres", &["front", "back"]).unwrap();
+        assert!(svg.contains("front") && svg.contains("back") && !svg.contains(", front"), "{svg}");
     }
 }

@@ -8,6 +8,7 @@ use ash::vk;
 use super::parameters::Parameters;
 use super::sph::Sph;
 use super::sph::parameters::Simulation;
+use super::sph::vent::Inflow;
 use super::start::Particles;
 use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::upload_rows;
@@ -27,9 +28,9 @@ const START: usize = 2;
 /// One position and one velocity texture, a texel for each particle.
 #[derive(Clone)]
 pub struct State {
-    /// Metres.
+    /// Metres; of a fluid the rate of strain per second in alpha.
     pub positions: Arc<ImageView>,
-    /// Metres per second.
+    /// Metres per second; of a fluid the temperature in kelvin in alpha.
     pub velocities: Arc<ImageView>,
 }
 
@@ -38,6 +39,7 @@ pub struct Animate {
     motion: Motion,
     /// The states that steps write alternately.
     pub states: [State; 2],
+    inflow: Inflow,
     steps: u32,
 }
 
@@ -124,7 +126,8 @@ impl Animate {
                 Motion::Sph(Box::new(Sph::new(context, [&states[0], &states[1], &start], count)?))
             }
         };
-        Ok(Animate { motion, states, steps: 0 })
+        let inflow = Inflow::of(parameters, particles.positions.len() as u32);
+        Ok(Animate { motion, states, inflow, steps: 0 })
     }
 
     /// Moves the particles one step.
@@ -141,7 +144,8 @@ impl Animate {
             }
             Motion::Sph(sph) => {
                 let to = self.steps as usize % 2;
-                sph.record(frame, if self.steps == 0 { START } else { 1 - to }, to)?;
+                let from = if self.steps == 0 { START } else { 1 - to };
+                sph.record(frame, [from, to], [self.steps, self.steps + 1].map(|steps| self.inflow.out(steps)))?;
             }
         }
         self.steps += 1;
@@ -171,21 +175,31 @@ impl Animate {
         &self.states[self.current()]
     }
 
+    /// Particles that are there after the last step: all, unless they come out of a vent.
+    pub fn out(&self) -> u32 {
+        self.inflow.out(self.steps)
+    }
+
     /// Index of the state that the last step wrote; the first before any.
     pub fn current(&self) -> usize {
         (self.steps.saturating_sub(1) % 2) as usize
     }
 }
 
-/// Fills `start` with the particles; what is left of the last row stays at the origin and at rest.
+/// Fills `start` with the particles and their temperatures; what is left of the last row stays at the origin and at rest.
 fn load(shaders: &ShaderLibrary, particles: &Particles, start: &State) -> Result<(), Error> {
-    for (view, values) in [(&start.positions, &particles.positions), (&start.velocities, &particles.velocities)] {
+    let Particles { positions, velocities, temperatures_k } = particles;
+    for (view, values, last) in
+        [(&start.positions, positions, &[][..]), (&start.velocities, velocities, &temperatures_k[..])]
+    {
         let size = (view.width(), view.height());
         upload_rows(shaders.device(), view, size, |first_row, bytes| {
             let first = (first_row * view.width()) as usize;
             let mut values = values.iter().skip(first);
+            let mut last = last.iter().skip(first);
             for texel in bytes.chunks_exact_mut(16) {
-                let value = values.next().map_or([0.0; 4], |v| v.extend(0.0).to_array());
+                let last = last.next().copied().unwrap_or(0.0);
+                let value = values.next().map_or([0.0; 4], |v| v.extend(last).to_array());
                 texel.copy_from_slice(bytemuck::bytes_of(&value));
             }
         })?;

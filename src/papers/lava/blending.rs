@@ -34,8 +34,8 @@ impl Blending {
         visibility: &Arc<ImageView>,
         sums: &Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let pass = splats
-            .pass(scene, "blending", "7.2", "lava/blending.frag")
+        let pass = scene
+            .hot(|shader| splats.pass(scene, "blending", "7.2", shader), "lava/blending")
             .constants::<ShadingConstants>()
             .with("visibility", visibility)
             .with("rock", &scene.rock)

@@ -25,7 +25,6 @@ pub struct Cluster {
     pub clusters: Clusters,
     /// One vertex buffer a cluster, each with the capacity for every particle; lowest cluster first.
     pub vertices: Vec<Arc<Buffer>>,
-    particle_count: usize,
 }
 
 impl Cluster {
@@ -37,20 +36,20 @@ impl Cluster {
             .collect::<Result<Vec<_>, _>>()?;
         let names: Vec<&str> = vertices.iter().map(|v| v.name()).collect();
         let info = PassInfo::host("cluster", "5.2", &[positions.name()], &names);
-        Ok(Cluster { info, clusters: Clusters::new(context.parameters), vertices, particle_count })
+        Ok(Cluster { info, clusters: Clusters::new(context.parameters), vertices })
     }
 
-    /// Sorts the positions that were read back into the vertex buffers.
+    /// Sorts the positions of the first `particles`, which were read back, into the vertex buffers.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&mut self, frame: &mut Frame<'_>, positions: &Buffer) -> Result<(), Error> {
-        let Cluster { info, clusters, vertices, particle_count } = self;
+    pub fn record(&mut self, frame: &mut Frame<'_>, positions: &Buffer, particles: u32) -> Result<(), Error> {
+        let Cluster { info, clusters, vertices } = self;
         frame.host(info, || {
             positions.read(positions.size_bytes(), |bytes| {
                 let texels: &[[f32; 4]] = bytemuck::cast_slice(bytes);
                 // The last row of the texture may hold more texels than there are particles.
-                clusters.classify(texels.get(..*particle_count).unwrap_or(texels));
+                clusters.classify(texels.get(..particles as usize).unwrap_or(texels));
             })?;
             for (buffer, particles) in vertices.iter().zip(&clusters.particles) {
                 buffer.write(0, bytemuck::cast_slice(particles))?;

@@ -62,7 +62,8 @@ impl March {
         let desc = BufferDesc::new(context.name("heights"), 4 * u64::from(columns) * u64::from(rows));
         let heights = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
             .map_err(|error| error.set_by("density"))?;
-        let march = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
+        let march = scene
+            .hot(|shader| Pass::graphics("march", "", "common/fullscreen.vert", shader), "lava/march")
             .constants::<RayConstants>()
             .with("scene", &scene.block)
             .with("highest", &found)

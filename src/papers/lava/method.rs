@@ -36,14 +36,14 @@ impl Method {
         })
     }
 
-    /// The particles of the state with this index by their places: clusters, or sorted cells.
+    /// The first `particles` of the state with this index by their places: clusters, or sorted cells.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn cluster(&mut self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+    pub fn cluster(&mut self, frame: &mut Frame<'_>, state: usize, particles: u32) -> Result<(), Error> {
         match self {
-            Method::Paper(read_back) => read_back.cluster(frame, state),
-            Method::GpuDriven(driven) => driven.cluster(frame, state),
+            Method::Paper(read_back) => read_back.cluster(frame, state, particles),
+            Method::GpuDriven(driven) => driven.cluster(frame, state, particles),
         }
     }
 

@@ -58,6 +58,7 @@ use std::sync::Arc;
 use self::normal_height::NormalHeight;
 use self::objects::Objects;
 use self::particles::ParticlePoints;
+use self::sph::surface_temperature::SurfaceTemperature;
 use self::targets::Context;
 use crate::gpu::transfer::read_image;
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
@@ -74,9 +75,11 @@ pub use self::parameters::{Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, 
 pub use self::placement::{Object, Place};
 pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
-pub use self::scene::depth_range_m;
+pub use self::scene::{Sheet, depth_range_m};
 pub use self::sph::Sph;
+pub use self::sph::heat::{Heat, Rheology};
 pub use self::sph::parameters::{Flow, Sides, Simulation};
+pub use self::sph::vent::{Inflow, Vent};
 pub use self::splatting::Splatting;
 pub use self::start::Particles;
 
@@ -107,6 +110,8 @@ pub struct Lava {
     pub method: Method,
     /// The surface.
     pub normal_height: NormalHeight,
+    /// Its temperatures; `None` of particles that have none.
+    pub surface_temperature: Option<SurfaceTemperature>,
     /// Stage three.
     pub splatting: Splatting,
     /// `None` without polygon objects.
@@ -148,10 +153,13 @@ impl Paper for Lava {
         if !is_repeated {
             self.advance(frame, number, u32::MAX)?;
             self.animate.record(frame)?;
-            self.method.cluster(frame, self.animate.current())?;
+            self.method.cluster(frame, self.animate.current(), self.animate.out())?;
         }
         self.method.accumulate(frame)?;
         self.normal_height.record(frame)?;
+        if let Some(surface_temperature) = &self.surface_temperature {
+            surface_temperature.record(frame)?;
+        }
         self.splatting.record(frame, self.drift_m(number))?;
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
     }
@@ -174,7 +182,7 @@ impl Paper for Lava {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         match &self.points {
-            Some(points) => points.record(frame, self.animate.current()),
+            Some(points) => points.record(frame, self.animate.current(), self.animate.out()),
             None => Ok(()),
         }
     }
@@ -222,9 +230,17 @@ impl Paper for Lava {
 
     fn targets(&self) -> Vec<Target> {
         let State { positions, velocities } = self.animate.state();
-        vec![
+        let motion = match self.surface_temperature {
+            None => "x, y, z in metres per second",
+            Some(_) => "x, y, z in metres per second, temperature in kelvin",
+        };
+        let temperatures = self.surface_temperature.as_ref().map(|pass| {
+            Target::image("surface-temperatures", &pass.temperatures)
+                .of("temperature in kelvin, and 1 where any lava is near")
+        });
+        let targets = vec![
             Target::image("positions", positions).of("x, y, z in metres"),
-            Target::image("velocities", velocities).of("x, y, z in metres per second"),
+            Target::image("velocities", velocities).of(motion),
             Target::image("density", self.method.density()).of("densities at four grid planes above each other"),
             Target::image("accumulated-depths", self.method.sums())
                 .of("sum of weighted heights in metres in red, sum of weights in alpha"),
@@ -236,7 +252,8 @@ impl Paper for Lava {
                 .of("sum of weighted light in red, green, blue, linear, sum of weights in alpha"),
             Target::image("picture", &self.splatting.normalisation.picture)
                 .of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
-        ]
+        ];
+        targets.into_iter().chain(temperatures).collect()
     }
 }
 
@@ -264,7 +281,12 @@ impl Lava {
         let method = Method::new(context, variant, &animate, count, instanced)?;
         let normal_height = NormalHeight::new(context, method.sums())?;
         let draw = parameters.surface_draw(variant);
-        let splatting = Splatting::new(shaders, label, parameters, &normal_height.surface, rock, instanced, draw)?;
+        let surface = &normal_height.surface;
+        let surface_temperature =
+            animate.sph().map(|sph| SurfaceTemperature::new(context, sph, surface)).transpose()?;
+        let temperatures = surface_temperature.as_ref().map(|pass| &pass.temperatures);
+        let sheet = Sheet { normal_height: surface, temperatures };
+        let splatting = Splatting::new(shaders, label, parameters, sheet, rock, instanced, draw)?;
         let Splatting { scene, depth, normalisation, .. } = &splatting;
         let view_warnings = view_warnings(parameters, objects);
         let meshes = objects.to_vec();
@@ -273,7 +295,7 @@ impl Lava {
             meshes => Some(Objects::new(context, meshes, scene, depth, normalisation)?),
         };
         let points = (parameters.shading == Shading::Particles)
-            .then(|| ParticlePoints::new(context, &animate, count, scene, normalisation))
+            .then(|| ParticlePoints::new(context, &animate, scene, normalisation))
             .transpose()?;
         let is_splatted = variant == Variant::Paper || draw == SurfaceDraw::Splats;
         let lacks_geometry_stage = is_splatted && parameters.geometry_stage && !has_geometry_stage;
@@ -284,6 +306,7 @@ impl Lava {
             animate,
             method,
             normal_height,
+            surface_temperature,
             splatting,
             objects,
             view_warnings,

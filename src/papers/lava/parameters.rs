@@ -339,7 +339,7 @@ impl Parameters {
                 .placeholder("FLOOR,TOP")
                 .range(Range::from(1.0).to(f64::from(HOTTEST_K)))
                 .unit("kelvin")
-                .help("Temperatures of a black body's colour at the floor and at the top of the space")
+                .help("Temperatures of a black body's colour at the floor and at the top of the space, where particles carry none")
                 .section("9")
                 .default_text("1423,1073 with a black body's colour")
                 .unrecorded(),
@@ -410,9 +410,17 @@ impl Parameters {
         ParameterError::check_camera(&self.camera)
     }
 
-    /// Temperatures at the floor and at the top of the space, kelvin.
+    /// Temperatures of free particles' colour at the floor and at the top of the space, kelvin.
     pub fn temperatures_k(&self) -> [f32; 2] {
         self.temperatures_k.unwrap_or(TEMPERATURES_K)
+    }
+
+    /// The hottest of a black body's colours, kelvin: what is exposed as it comes. A fluid's is its temperature at the start.
+    pub fn hottest_k(&self) -> f32 {
+        match self.simulation {
+            Simulation::Free => self.temperatures_k().into_iter().fold(0.0, f32::max),
+            Simulation::Sph => self.flow.heat.melt_k,
+        }
     }
 
     /// Drawing of the surface in a variant.

@@ -18,7 +18,6 @@ host_block! {
 pub struct ParticlePoints {
     /// One for each state of the animation.
     passes: [Pass; 2],
-    count: u32,
     constants: PointsConstants,
 }
 
@@ -30,7 +29,6 @@ impl ParticlePoints {
     pub fn new(
         context: Context<'_>,
         animate: &Animate,
-        count: u32,
         scene: &Scene,
         normalisation: &Normalisation,
     ) -> Result<Self, Error> {
@@ -46,16 +44,16 @@ impl ParticlePoints {
         // A pixel in a picture of 400 rows; never none.
         let size_px = (context.parameters.height as f32 / 400.0).max(1.0);
         let constants = PointsConstants { width: a.width(), size_px };
-        Ok(ParticlePoints { passes: [first, second], count, constants })
+        Ok(ParticlePoints { passes: [first, second], constants })
     }
 
-    /// Draws the particles of the state with this index.
+    /// Draws the first `count` particles of the state with this index.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, state: usize, count: u32) -> Result<(), Error> {
         frame.graphics(&self.passes[state], |draw| {
-            draw.constants(&self.constants).vertices(self.count);
+            draw.constants(&self.constants).vertices(count);
         })
     }
 }

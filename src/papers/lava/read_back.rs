@@ -59,13 +59,13 @@ impl ReadBack {
         })
     }
 
-    /// Reads the positions of the state with this index back, and clusters them.
+    /// Reads the positions of the state with this index back, and clusters the first `particles`.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn cluster(&mut self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+    pub fn cluster(&mut self, frame: &mut Frame<'_>, state: usize, particles: u32) -> Result<(), Error> {
         let positions = self.read_positions.record(frame, state)?;
-        self.cluster.record(frame, positions)
+        self.cluster.record(frame, positions, particles)
     }
 
     /// Densities and accepted points cluster by cluster, then the sums of eq. 6.3.

@@ -9,6 +9,7 @@ use super::parameters::Parameters;
 use super::rock::Rock;
 use super::sph::parameters::Simulation;
 use super::targets::Context;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::update;
 use crate::gpu::{Buffer, Error, ImageView, Sampler};
 use crate::host_block;
@@ -35,6 +36,15 @@ host_block! {
     }
 }
 
+/// The surface, as textures over the whole space.
+#[derive(Clone, Copy)]
+pub struct Sheet<'a> {
+    /// Normals in RGB, heights in metres in alpha.
+    pub normal_height: &'a Arc<ImageView>,
+    /// Kelvin in red where there is 1 in green; `None` where the temperature follows from the height.
+    pub temperatures: Option<&'a Arc<ImageView>>,
+}
+
 /// The scene on the device.
 pub struct Scene {
     /// Normals in RGB, heights in metres in alpha, over the whole space.
@@ -45,6 +55,8 @@ pub struct Scene {
     pub rock: Arc<ImageView>,
     /// Light of black bodies by temperature.
     pub emission: Arc<Buffer>,
+    /// Kelvin in red where there is 1 in green, over the whole space; `None` where the temperature follows from the height.
+    pub temperatures: Option<Arc<ImageView>>,
     /// The sampler of the rock.
     pub linear: Arc<Sampler>,
 }
@@ -52,15 +64,25 @@ pub struct Scene {
 impl Scene {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, normal_height: &Arc<ImageView>, rock: &Rock) -> Result<Self, Error> {
+    pub fn new(context: Context<'_>, sheet: Sheet<'_>, rock: &Rock) -> Result<Self, Error> {
+        let Sheet { normal_height, temperatures } = sheet;
         let block = block(context.parameters, normal_height, rock);
         Ok(Scene {
             normal_height: normal_height.clone(),
             block: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
             rock: rock.load(context)?,
             emission: blackbody::load(context)?,
+            temperatures: temperatures.cloned(),
             linear: Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?,
         })
+    }
+
+    /// The shader of that stem that colours by these temperatures, and its pass with them.
+    pub(super) fn hot(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
+        match &self.temperatures {
+            None => pass(&format!("{stem}-height.frag")),
+            Some(temperatures) => pass(&format!("{stem}-carried.frag")).with("temperatures", temperatures),
+        }
     }
 
     /// Writes the uniform block anew.
@@ -89,7 +111,7 @@ fn bare_m(parameters: &Parameters) -> f32 {
 fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -> SceneBlock {
     let camera = &parameters.camera;
     let temperatures_k = parameters.temperatures_k();
-    let hottest_k = temperatures_k[0].max(temperatures_k[1]);
+    let hottest_k = parameters.hottest_k();
     let per_brightest = blackbody::per_brightest(hottest_k);
     // Objects and particles take the colour of the hottest, as the display has it.
     let hottest = || {

@@ -23,7 +23,7 @@ use crate::measure::parameter::{Choice as _, Value as _};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
+use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Simulation, Variant};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Mesh, promised_triangles};
 
@@ -61,11 +61,14 @@ impl Setup {
     /// [`Error::Parameter`], [`Error::Input`].
     pub fn check(&self) -> Result<(), Error> {
         self.parameters.validate()?;
-        if let Some([floor, top]) = self.parameters.temperatures_k
-            && !self.parameters.is_blackbody
-        {
-            let problem = "the constant colour has no temperature; give `color` blackbody";
-            return Err(Error::Input(format!("`temperatures` {floor},{top}: {problem}")));
+        if let Some([floor, top]) = self.parameters.temperatures_k {
+            let refused = |problem| Err(Error::Input(format!("`temperatures` {floor},{top}: {problem}")));
+            if self.parameters.simulation == Simulation::Sph {
+                return refused("the fluid's particles carry their own; give `melt-temperature`");
+            }
+            if !self.parameters.is_blackbody {
+                return refused("the constant colour has no temperature; give `color` blackbody");
+            }
         }
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
@@ -147,7 +150,7 @@ impl Study for Setup {
     fn config(&self, scene: &Scene, paper: &Lava) -> Map<String, Value> {
         let mut config = parameter::config(&Self::parameters(), self);
         config.insert("surface_draw".to_owned(), json!(self.parameters.surface_draw(paper.variant()).name()));
-        if self.parameters.is_blackbody {
+        if self.parameters.is_blackbody && self.parameters.simulation == Simulation::Free {
             config.insert("temperatures".to_owned(), json!(self.parameters.temperatures_k()));
         }
         config.insert("rho".to_owned(), json!(self.parameters.rho()));

@@ -8,7 +8,7 @@ use super::march::March;
 use super::normalisation::Normalisation;
 use super::parameters::{Parameters, SurfaceDraw};
 use super::rock::Rock;
-use super::scene::Scene;
+use super::scene::{Scene, Sheet};
 use super::splats::Splats;
 use super::targets::{Context, DEPTH, EMPTY, FLOATS};
 use super::visibility::Visibility;
@@ -44,8 +44,7 @@ struct SplatPasses {
 }
 
 impl Splatting {
-    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats
-    /// are quads without a geometry stage.
+    /// The stage on these textures. `instanced` splats are quads without a geometry stage.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -53,13 +52,13 @@ impl Splatting {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        normal_height: &Arc<ImageView>,
+        sheet: Sheet<'_>,
         rock: &Rock,
         instanced: bool,
         draw: SurfaceDraw,
     ) -> Result<Self, Error> {
         let context = Context { shaders, label, parameters };
-        let scene = Scene::new(context, normal_height, rock)?;
+        let scene = Scene::new(context, sheet, rock)?;
         let depth = context.target("visibility", DEPTH, parameters.width, parameters.height)?;
         let sums = context.target("accumulated-colors", FLOATS, parameters.width, parameters.height)?;
         let drawing = match draw {

@@ -14,6 +14,8 @@ pub struct Particles {
     pub positions: Vec<Vec3>,
     /// As many as positions.
     pub velocities: Vec<Vec3>,
+    /// Kelvin, as many as positions; none of particles that have no temperature.
+    pub temperatures_k: Vec<f32>,
 }
 
 impl Particles {
@@ -24,7 +26,11 @@ impl Particles {
             (Random::with_stream(parameters.seed, 0), Random::with_stream(parameters.seed, 1));
         let speed = parameters.speed_m_s;
         let count = parameters.particles as usize;
-        let mut particles = Particles { positions: Vec::with_capacity(count), velocities: Vec::with_capacity(count) };
+        let mut particles = Particles {
+            positions: Vec::with_capacity(count),
+            velocities: Vec::with_capacity(count),
+            temperatures_k: Vec::new(),
+        };
         for _ in 0..count {
             let place = [(); 3].map(|()| places.unit());
             particles.positions.push(Vec3::from_array(place) * parameters.space_m);
@@ -35,11 +41,12 @@ impl Particles {
         particles
     }
 
-    /// As the simulation starts: free particles all over the space, or a block of lava.
+    /// As the simulation starts: free particles all over the space, a block of lava, or what
+    /// will come out of a vent.
     pub fn of(parameters: &Parameters) -> Self {
         match parameters.simulation {
             Simulation::Free => Particles::seeded(parameters),
-            Simulation::Sph => sph::start::block(parameters),
+            Simulation::Sph => sph::start::particles(parameters),
         }
     }
 

@@ -243,6 +243,31 @@ fn the_crossing_lies_on_the_isosurface_and_the_mean_inside() {
 }
 
 #[test]
+fn a_flow_is_followed_over_time() {
+    let out = folder();
+    let flow =
+        "--simulation sph --effusion-rate 0.1 --vent-radius 0.3 --vent 0.6,0.5 --heat-capacity 12 --particles 400";
+    small("experiment flow --frames 21 --out . --quiet").args(flow).inside(out.path()).run().succeeded();
+    let files = ["lava-flow-temperatures.svg", "lava-flow.csv", "lava-flow.json", "lava-flow.svg"];
+    assert_eq!(entries(out.path()), files);
+    let table = read_json(&out.path().join("lava-flow.json"));
+    let rows = table["table"]["rows"].as_array().unwrap();
+    let value = |row: usize, column: &str| rows[row][column].as_f64().unwrap_or_else(|| panic!("{column}: {table}"));
+    assert_eq!(rows.len(), 21);
+    assert!((value(20, "time s") - 0.7).abs() < 1e-6, "{table}");
+    // 0.07 of 0.72 m^3, to half a particle; no row's effusion is off by more than a particle in a step.
+    let particle = 0.72 / 400.0;
+    assert!((value(20, "volume m3") - 0.07).abs() <= 0.51 * particle, "{table}");
+    for row in 1..21 {
+        assert!((value(row, "effusion m3/s") - 0.1).abs() < 31.0 * particle, "{table}");
+        assert!(value(row, "greatest K") <= 1423.01 && value(row, "skin K") <= value(row, "greatest K"), "{table}");
+    }
+    assert!(value(20, "mean K") < value(1, "mean K") && value(20, "area m2") > value(1, "area m2"), "{table}");
+    small("experiment flow").run().refused(2, &["--simulation"]);
+    small("experiment flow --frame 3 --simulation sph").run().refused(2, &["--frame", "--frames"]);
+}
+
+#[test]
 fn a_march_stands_for_the_splats() {
     let record =
         small("bench --json --quiet --validate --surface-draw march --object box").args(ONCE).run().succeeded().json();

@@ -177,8 +177,11 @@ fn stretches_are_gathered_piece_by_piece() {
         };
         let spots = [Vec3::new(0.3, 0.4, 0.5), Vec3::new(1.7, 0.9, 0.8)];
         let at = |i: u32| spots[usize::from(i.is_multiple_of(50))] + 1e-6 * (i % 7) as f32;
-        let particles =
-            Particles { positions: (0..count).map(at).collect(), velocities: vec![Vec3::ZERO; count as usize] };
+        let particles = Particles {
+            positions: (0..count).map(at).collect(),
+            velocities: vec![Vec3::ZERO; count as usize],
+            temperatures_k: Vec::new(),
+        };
         let mut lava = variant_of(device, Variant::GpuDriven, &parameters, &particles);
         let sample = draw(device, &mut lava, 0);
         assert_eq!(sample.passes.iter().find(|p| p.info.name == "density").unwrap().calls, 3);

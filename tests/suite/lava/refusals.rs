@@ -2,7 +2,7 @@
 
 use fumarole::gpu::Error;
 use fumarole::measure::study::Study;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Variant, setup::Setup};
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Simulation, Variant, setup::Setup};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
@@ -60,6 +60,14 @@ fn temperatures_without_a_black_body_are_refused() {
     assert_eq!(of(true), Ok(()));
     let error = of(false).unwrap_err();
     assert!(error.contains("temperatures") && error.contains("blackbody"), "{error}");
+    let parameters = Parameters {
+        temperatures_k: Some([1300.0, 1000.0]),
+        is_blackbody: true,
+        simulation: Simulation::Sph,
+        ..Parameters::default()
+    };
+    let error = Setup { parameters, ..Setup::default() }.check().unwrap_err().to_string();
+    assert!(error.contains("temperatures") && error.contains("melt-temperature"), "{error}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use ash::vk;
 use fumarole::gpu::transfer::upload_rows;
 use fumarole::gpu::{Device, Image, ImageDesc, ImageView, Mode, Recorder};
 use fumarole::papers::lava::reference::{Splats, Surface, toned};
-use fumarole::papers::lava::{Parameters, Rock, Shading, Splatting, SurfaceDraw, Tone, Variant, depth_range_m};
+use fumarole::papers::lava::{Parameters, Rock, Shading, Sheet, Splatting, SurfaceDraw, Tone, Variant, depth_range_m};
 use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
@@ -48,6 +48,11 @@ fn texture(device: &Arc<Device>, surface: &Surface) -> Arc<ImageView> {
     view
 }
 
+/// It, without temperatures.
+fn sheet(normal_height: &Arc<ImageView>) -> Sheet<'_> {
+    Sheet { normal_height, temperatures: None }
+}
+
 pub(super) fn low_camera() -> Camera {
     Camera {
         eye: Vec3::new(1.1, 1.0, 2.8),
@@ -62,7 +67,8 @@ pub(super) fn stage(device: &Arc<Device>, parameters: &Parameters, surface: &Sur
     let texture = texture(device, surface);
     let instanced = !parameters.geometry_stage;
     let draw = parameters.surface_draw(Variant::Paper);
-    let splatting = Splatting::new(&shaders(device), "test", parameters, &texture, rock, instanced, draw).unwrap();
+    let splatting =
+        Splatting::new(&shaders(device), "test", parameters, sheet(&texture), rock, instanced, draw).unwrap();
     let mut recorder = Recorder::new(device).unwrap();
     recorder.run(Mode::Plain, |frame| splatting.record(frame, 0.0)).unwrap();
     splatting
@@ -209,7 +215,8 @@ fn the_rock_is_read_at_the_splats_centre_and_drifts() {
         surface.heights.fill(0.0);
         let texture = texture(device, &surface);
         let stage =
-            Splatting::new(&shaders(device), "test", &parameters, &texture, &rock, false, SurfaceDraw::Splats).unwrap();
+            Splatting::new(&shaders(device), "test", &parameters, sheet(&texture), &rock, false, SurfaceDraw::Splats)
+                .unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         // The one splat's centre is the middle of the space.
         for drift_m in [0.0, 0.1, 0.29, 0.5] {

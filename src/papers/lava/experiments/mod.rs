@@ -1,6 +1,7 @@
 //! The thesis's figures, its frame rate, and growth of the method's times.
 
 pub mod figures;
+mod flow;
 pub mod points;
 mod readback;
 mod results;
@@ -63,7 +64,14 @@ pub fn all() -> Vec<Experiment<Setup>> {
         refuses: &[("surface", "all three are compared")],
         run: surfaces,
     };
-    figures.into_iter().chain(others).chain([surface]).collect()
+    let flow = Experiment {
+        name: "flow",
+        help: "The fluid over time: effusion, front, area, thickness and temperatures",
+        options: &[],
+        refuses: &[("frame", "this experiment follows frames from 0 on; give `frames`")],
+        run: flows,
+    };
+    figures.into_iter().chain(others).chain([surface, flow]).collect()
 }
 
 const REFUSED_BY_FIGURES: &[(&str, &str)] = &[
@@ -150,6 +158,18 @@ fn surfaces(context: &mut Context<'_>) -> Result<(), Error> {
     let mut machine = context.open()?;
     let table = surface::table(&mut machine, &context.setup, context.options.frame)?;
     context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn flows(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    flow::check(&context.setup)?;
+    let mut machine = context.open()?;
+    let frames = context.measure.frames.unwrap_or(flow::FRAMES).max(1);
+    let table = flow::table(&mut machine, &context.setup, frames)?;
+    let temperatures = table.lines("time s", "kelvin", &flow::TEMPERATURES)?;
+    context.save(&context.file("-temperatures.svg"), temperatures.as_bytes())?;
+    context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
     machine.check_validation().map_err(Error::from).map(drop)
 }
 

@@ -70,12 +70,12 @@ impl GpuDriven {
         Ok(GpuDriven { sort, density, extract, accumulate_depths, columns, sums, most_work })
     }
 
-    /// Sorts the particles of the state with this index.
+    /// Sorts the first `particles` of the state with this index.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn cluster(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
-        self.sort.record(frame, state)
+    pub fn cluster(&self, frame: &mut Frame<'_>, state: usize, particles: u32) -> Result<(), Error> {
+        self.sort.record(frame, state, particles)
     }
 
     /// Densities, and from them the sums of eq. 6.3.

@@ -27,14 +27,14 @@ fn wendland(distance: f64, support: f64) -> f64 {
 }
 
 /// Its derivative by the distance, by differences.
-fn wendland_slope(distance: f64, support: f64) -> f64 {
+pub(super) fn wendland_slope(distance: f64, support: f64) -> f64 {
     let small = 1e-6 * support;
     let low = (distance - small).max(0.0);
     (wendland(distance + small, support) - wendland(low, support)) / (distance + small - low)
 }
 
 /// Integral from `low` to `high` by Simpson's rule.
-fn integral(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn integral(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
     const PARTS: usize = 64;
     let step = (high - low) / PARTS as f64;
     let weight = |at: usize| if at == 0 || at == PARTS { 1.0 } else { 2.0 + 2.0 * (at % 2) as f64 };
@@ -42,7 +42,7 @@ fn integral(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl Fluid {
-    fn apart(&self, a: DVec3, b: DVec3) -> DVec3 {
+    pub(super) fn apart(&self, a: DVec3, b: DVec3) -> DVec3 {
         let mut offset = a - b;
         if self.is_periodic {
             offset.x -= self.space.x * (offset.x / self.space.x).round();
@@ -52,7 +52,7 @@ impl Fluid {
     }
 
     /// Factors of a particle's volume with which a cubic lattice has the density 1 and the Laplacian of a parabola.
-    fn volumes(&self) -> (f64, f64) {
+    pub(super) fn volumes(&self) -> (f64, f64) {
         let range = -3..=3;
         let lattice = range.clone().flat_map(|x| range.clone().flat_map(move |y| (-3..=3).map(move |z| (x, y, z))));
         let (mut density, mut laplacian) = (0.0, 0.0);
@@ -69,7 +69,7 @@ impl Fluid {
     }
 
     /// Distances to walls and the directions away from them.
-    fn walls(&self, place: DVec3) -> Vec<(f64, DVec3)> {
+    pub(super) fn walls(&self, place: DVec3) -> Vec<(f64, DVec3)> {
         let floor = (place.y, DVec3::Y);
         let sides = [
             (place.x, DVec3::X),
@@ -81,7 +81,7 @@ impl Fluid {
     }
 
     /// The kernel integrated over a plane at a distance.
-    fn over_plane(&self, distance: f64) -> f64 {
+    pub(super) fn over_plane(&self, distance: f64) -> f64 {
         if distance >= self.support {
             return 0.0;
         }
@@ -89,7 +89,7 @@ impl Fluid {
     }
 
     /// The kernel integrated over all that lies beyond a wall at a distance.
-    fn beyond(&self, distance: f64) -> f64 {
+    pub(super) fn beyond(&self, distance: f64) -> f64 {
         if distance >= self.support { 0.0 } else { integral(distance, self.support, |z| self.over_plane(z)) }
     }
 
@@ -98,10 +98,12 @@ impl Fluid {
         if distance >= self.support {
             return 0.0;
         }
-        let plane = |z: f64| {
-            integral(z, self.support, |r| -std::f64::consts::TAU * r * wendland_slope(r, self.support) / r.max(1e-12))
-        };
-        integral(distance, self.support, |z| plane(z) * z) / distance
+        integral(distance, self.support, |z| self.drag_of_plane(z) * z) / distance
+    }
+
+    /// The kernel's slope over the distance, integrated over a plane.
+    pub(super) fn drag_of_plane(&self, z: f64) -> f64 {
+        integral(z, self.support, |r| -std::f64::consts::TAU * r * wendland_slope(r, self.support) / r.max(1e-12))
     }
 
     /// Density over that at rest and the constraint's factor, lambda, in metres squared.
@@ -149,8 +151,15 @@ impl Fluid {
         if self.is_periodic { DVec3::new(place.x, clamped.y, place.z) } else { clamped }
     }
 
-    /// Residual of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity.
-    pub fn viscous_residual(&self, places: &[DVec3], before: &[DVec3], after: &[DVec3], at: usize) -> DVec3 {
+    /// Residual of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity,
+    /// `viscosities` over the melt's.
+    pub fn viscous_residual(
+        &self,
+        places: &[DVec3],
+        viscosities: &[f64],
+        [before, after]: [&[DVec3]; 2],
+        at: usize,
+    ) -> DVec3 {
         let (_, volume) = self.volumes();
         let rate = 2.0 * self.step * self.kinematic;
         let mut braked = after[at];
@@ -158,11 +167,13 @@ impl Fluid {
             let distance = self.apart(places[at], other).length();
             if i != at && distance > 0.0 {
                 let drag = -wendland_slope(distance, self.support) / distance;
-                braked += rate * volume * drag * (after[at] - after[i]);
+                // Half as resistant as both in a row.
+                let viscosity = 2.0 / (1.0 / viscosities[at] + 1.0 / viscosities[i]);
+                braked += rate * viscosity * volume * drag * (after[at] - after[i]);
             }
         }
         for (distance, _) in self.walls(places[at]) {
-            braked += rate * self.wall_drag(distance) * after[at];
+            braked += rate * viscosities[at] * self.wall_drag(distance) * after[at];
         }
         before[at] - braked
     }

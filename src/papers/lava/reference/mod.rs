@@ -2,12 +2,14 @@
 //!
 //! [`step`] is listing 5.1, [`clusters`] section 5.2, [`density`] eq. 6.2, [`Grid::accepted`] section 6.2,
 //! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7, [`toned`] the display's
-//! tone, [`Surface::cast`] rays, which are ours, [`light`] black bodies' and [`Fluid`] a viscous fluid (chapter 9).
+//! tone, [`Surface::cast`] rays, which are ours, [`light`] black bodies', [`Fluid`] a viscous fluid and [`Heat`] its heat
+//! (chapter 9).
 
 mod animation;
 mod blackbody;
 mod density;
 mod fluid;
+mod heat;
 mod rays;
 mod splats;
 mod surface;
@@ -16,5 +18,6 @@ pub use animation::{clusters, step};
 pub use blackbody::{encoded, light};
 pub use density::{Grid, density};
 pub use fluid::Fluid;
+pub use heat::{Heat, cooled_slab, melt_viscosity, yield_stress};
 pub use splats::{Pixel, Splats, toned};
 pub use surface::Surface;

@@ -4,7 +4,8 @@ use super::super::parameters::Parameters;
 use super::MOST_ITERATIONS;
 use super::Scale;
 use super::chebyshev;
-use super::parameters::{Sides, Simulation};
+use super::heat::{Heat, Rheology};
+use super::parameters::{Flow, Sides, Simulation};
 use crate::measure::ParameterError;
 
 /// Checks what ranges of single numbers do not.
@@ -37,11 +38,17 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         parameters.time_step_s,
         "must be above 0, and so short that gravity alone moves lava by no more than 2.4 distances of its particles",
     )?;
-    let needed = chebyshev::needed(scale.stiffness);
+    check_heat(flow, &scale)?;
+    flow.vent.check(parameters)?;
+    let needed = chebyshev::needed(scale.stiffness * scale.stiffest);
+    let (name, viscosity_pa_s) = match flow.heat.rheology {
+        Rheology::Constant => ("viscosity", flow.viscosity_pa_s),
+        Rheology::Basalt => ("crust-viscosity", flow.heat.crust_pa_s),
+    };
     ParameterError::check(
         needed <= f64::from(MOST_ITERATIONS),
-        "viscosity",
-        flow.viscosity_pa_s,
+        name,
+        viscosity_pa_s,
         &format!(
             "would need {needed:.0} iterations a step of {MOST_ITERATIONS} at most: take a shorter `time-step` or fewer \
              `particles`"
@@ -53,5 +60,42 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         "sides",
         "periodic",
         "needs a space along x and z of three radii of the kernel at least, 7.2 distances of its particles",
+    )
+}
+
+/// All neighbours' weights of a particle that is three times as dense as at rest, where `heat_stiffness` is 1: what it gives away
+/// in a step is no more than what it has.
+const MOST_CONDUCTED: f64 = 3.0 * 28.0;
+
+fn check_heat(flow: &Flow, scale: &Scale) -> Result<(), ParameterError> {
+    let heat = &flow.heat;
+    ParameterError::check(
+        heat.ambient_k <= heat.melt_k,
+        "ambient",
+        heat.ambient_k,
+        "must be no hotter than the lava at the start, `melt-temperature`",
+    )?;
+    ParameterError::check(
+        MOST_CONDUCTED * scale.heat_stiffness <= 1.0,
+        "conductivity",
+        heat.conductivity_w_mk,
+        "would carry heat farther in a step than from particle to particle: take a shorter `time-step`, fewer `particles` or \
+         a larger `heat-capacity`",
+    )?;
+    let default = Heat::default();
+    if heat.rheology == Rheology::Constant {
+        for (name, value, usual) in
+            [("solidus", heat.solidus_k, default.solidus_k), ("crust-viscosity", heat.crust_pa_s, default.crust_pa_s)]
+        {
+            ParameterError::check(value == usual, name, value, "changes nothing without `rheology` basalt")?;
+        }
+        return Ok(());
+    }
+    ParameterError::check(flow.viscosity_pa_s > 0.0, "viscosity", flow.viscosity_pa_s, "must be above 0 for basalt")?;
+    ParameterError::check(
+        heat.crust_pa_s >= flow.viscosity_pa_s,
+        "crust-viscosity",
+        heat.crust_pa_s,
+        "must be at least the melt's, `viscosity`",
     )
 }

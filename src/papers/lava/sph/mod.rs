@@ -1,27 +1,34 @@
 //! Stage one as a viscous fluid (chapter 9, "Improved particle simulation"): smoothed particle hydrodynamics.
 //!
 //! ```text
-//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-viscosity ─┐
-//!   ┌───────────────────────────────────────────────────────────────────────────────── a few dozen times ◄──────┘
-//!   └─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
-//!                        `─ corrections ─´
+//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-heat ─► sph-rheology ─┐
+//!   ┌──────────────────────────────────────────────────────────────────────────────────────────────────────────────────┘
+//!   └─► sph-viscosity ─► sph-strain ─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
+//!         `─ a few dozen times            `─ corrections ─´
 //! ```
 //!
 //! Pressure is that of position-based fluids (Macklin and Mueller 2013), which no step makes unstable; viscosity is implicit
-//! (Morris et al. 1997, by Chebyshev's semi-iteration). All sums are gathered in the order of the cells: every run is the same
+//! (Morris et al. 1997, by Chebyshev's semi-iteration), with `sph-rheology` one that follows from temperature and stress. All sums are gathered in the order of the cells: every run is the same
 //! to the bit.
 
 pub mod chebyshev;
 pub mod check;
+pub mod heat;
 pub mod kernel;
 pub mod parameters;
 mod sph_correct;
 mod sph_density;
 mod sph_finish;
 mod sph_forces;
+mod sph_heat;
+mod sph_inflow;
 mod sph_predict;
+mod sph_rheology;
+mod sph_strain;
 mod sph_viscosity;
 pub mod start;
+pub mod surface_temperature;
+pub mod vent;
 
 use std::sync::Arc;
 
@@ -29,13 +36,19 @@ use ash::vk;
 use glam::DVec3;
 
 use self::chebyshev::Coefficients;
+use self::heat::Rheology;
 use self::sph_correct::sph_correct;
 use self::sph_density::sph_density;
 use self::sph_finish::sph_finish;
 use self::sph_forces::sph_forces;
+use self::sph_heat::sph_heat;
+use self::sph_inflow::sph_inflow;
 use self::sph_predict::sph_predict;
+use self::sph_rheology::sph_rheology;
+use self::sph_strain::sph_strain;
 use self::sph_viscosity::sph_viscosity;
 use super::animate::State;
+use super::estimate::TEXEL;
 use super::gpu_driven::Cells;
 use super::gpu_driven::sort::{self, Sort};
 use super::parameters::Parameters;
@@ -62,6 +75,23 @@ host_block! {
         gained: f32,
         margin_m: f32,
         periodic: f32,
+        laplacian: f32,
+        conduction: f32,
+        given: f32,
+        radiance: f32,
+        ambient_k: f32,
+        melt_k: f32,
+        solidus_k: f32,
+        per_viscosity: f32,
+        stiffest: f32,
+    }
+}
+
+host_block! {
+    struct InflowConstants {
+        first: u32,
+        count: u32,
+        width: u32,
     }
 }
 
@@ -76,7 +106,11 @@ const MORE_CELLS: u32 = 1 << 22;
 pub struct Sph {
     /// By cells of the kernel's radius, of the start and of the two states.
     pub sort: Sort,
+    /// Into the first two states.
+    inflow: [Pass; 2],
     forces: [Pass; 3],
+    heat_pass: Pass,
+    rheology: Option<Rheologic>,
     viscosity: [Pass; 2],
     predict: Pass,
     density: [Pass; 2],
@@ -88,13 +122,22 @@ pub struct Sph {
     /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
     /// even in number.
     pub velocities: [Arc<Buffer>; 2],
-    /// Velocities that gravity alone leaves.
+    /// Velocities that gravity alone leaves, and in the fourth component kelvin as the step begins.
     pub pushed: Arc<Buffer>,
+    /// Kelvin as the step ends, and the steepness of a particle's face.
+    pub heat: Arc<Buffer>,
     /// Predicted places by cells, metres, likewise by corrections.
     pub predicted: [Arc<Buffer>; 2],
     /// Factor of the constraint times h^-2, density over that at rest: before the last correction.
     pub factors: Arc<Buffer>,
     crowded: Arc<Buffer>,
+}
+
+/// Passes `sph-rheology` and `sph-strain`.
+struct Rheologic {
+    pass: Pass,
+    strain: Pass,
+    viscosities: Arc<Buffer>,
 }
 
 /// Numbers of the discretization, for `particles` of them.
@@ -112,6 +155,14 @@ pub struct Scale {
     pub stiffness: f64,
     /// Nearest that a particle comes to a wall, metres.
     pub margin_m: f64,
+    /// Step times diffusivity of heat over support^2.
+    pub heat_stiffness: f64,
+    /// Of a particle's warmth over its face's, that which goes to a whole face in a step.
+    pub given: f64,
+    /// Heat that a face radiates over that which reaches it from the particle's middle for each kelvin, per K^3.
+    pub radiance: f64,
+    /// Most viscosity over the melt's.
+    pub stiffest: f64,
 }
 
 impl Scale {
@@ -123,13 +174,20 @@ impl Scale {
         let (density, laplacian) = kernel::lattice_sums();
         let volume = (spacing_m / support_m).powi(3);
         let kinematic = f64::from(flow.viscosity_pa_s) / f64::from(flow.melt_kg_m3);
+        let step_s = f64::from(parameters.time_step_s);
+        let diffusivity_m2_s = flow.heat.diffusivity_m2_s(flow.melt_kg_m3);
         Scale {
             spacing_m,
             support_m,
             volume: volume / density,
             laplacian: volume / laplacian,
-            stiffness: f64::from(parameters.time_step_s) * kinematic / (support_m * support_m),
+            stiffness: step_s * kinematic / (support_m * support_m),
             margin_m: MARGIN * spacing_m,
+            heat_stiffness: step_s * diffusivity_m2_s / (support_m * support_m),
+            // The face is half a distance away.
+            given: 2.0 * step_s * diffusivity_m2_s / (spacing_m * spacing_m),
+            radiance: flow.heat.radiance(spacing_m),
+            stiffest: flow.heat.stiffest(flow.viscosity_pa_s),
         }
     }
 
@@ -160,21 +218,36 @@ impl Sph {
         let velocities = [buffer("velocities-a", 16)?, buffer("velocities-b", 16)?];
         let predicted = [buffer("predicted-a", 16)?, buffer("predicted-b", 16)?];
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
+        let heat = buffer("heat", 8)?;
         let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
 
-        let coefficients = chebyshev::coefficients(scale.stiffness);
+        let coefficients = chebyshev::coefficients(scale.stiffness * scale.stiffest);
+        let rheology = match parameters.flow.heat.rheology {
+            Rheology::Constant => None,
+            Rheology::Basalt => {
+                let viscosities = buffer("viscosities", 4)?;
+                let pass = sph_rheology(shaders, &sort, [&change, &heat], &viscosities)?;
+                let strain = sph_strain(shaders, &sort, &velocities[coefficients.len() % 2], &change)?;
+                Some(Rheologic { pass, strain, viscosities })
+            }
+        };
         let corrections = parameters.flow.corrections;
+        let inflow = |state| sph_inflow(shaders, states[2], state);
         let forces = |state| sph_forces(shaders, &sort, state, [&pushed, &velocities[0], &change]);
+        let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
-            sph_viscosity(shaders, &sort, [&velocities[from], &velocities[to]], [&pushed, &change])
+            sph_viscosity(shaders, &sort, [&velocities[from], &velocities[to]], [&pushed, &change], viscosities)
         };
         let density = |from: usize| sph_density(shaders, &sort, &predicted[from], [&factors, &crowded]);
         let correct =
             |[from, to]: [usize; 2]| sph_correct(shaders, &sort, [&predicted[from], &predicted[to]], &factors);
-        let finish = |state| sph_finish(shaders, &sort, &predicted[corrections as usize % 2], state);
+        let finish = |state| sph_finish(shaders, &sort, [&predicted[corrections as usize % 2], &heat, &change], state);
         Ok(Sph {
+            inflow: [inflow(states[0])?, inflow(states[1])?],
             forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
+            heat_pass: sph_heat(shaders, &sort, &pushed, &heat)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
+            rheology,
             predict: sph_predict(shaders, &sort, &velocities[coefficients.len() % 2], &predicted[0])?,
             density: [density(0)?, density(1)?],
             correct: [correct([0, 1])?, correct([1, 0])?],
@@ -185,39 +258,78 @@ impl Sph {
             corrections,
             velocities,
             pushed,
+            heat,
             predicted,
             factors,
             crowded,
         })
     }
 
-    /// A step from one state to another; the third is the start.
+    /// A step from one state to another; the third is the start. Of the particles that are `out`, `before` have been so in
+    /// the last step.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, from: usize, to: usize) -> Result<(), Error> {
-        let particles = self.constants.particles;
+    pub fn record(&self, frame: &mut Frame<'_>, [from, to]: [usize; 2], [before, out]: [u32; 2]) -> Result<(), Error> {
+        let constants = FlowConstants { particles: out, ..self.constants };
+        let particles = out;
+        // The start has all of them.
+        if let Some(inflow) = self.inflow.get(from).filter(|_| out > before) {
+            let constants = InflowConstants { first: before, count: out - before, width: constants.width };
+            frame.compute(inflow, |dispatch| {
+                dispatch.constants(&constants).elements(constants.count);
+            })?;
+        }
         let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants| {
             frame.compute(pass, |dispatch| {
                 dispatch.constants(constants).elements(particles);
             })
         };
-        self.sort.record(frame, from)?;
-        run(frame, &self.forces[from], &self.constants)?;
+        self.sort.record(frame, from, out)?;
+        run(frame, &self.forces[from], &constants)?;
+        run(frame, &self.heat_pass, &constants)?;
+        if let Some(rheology) = &self.rheology {
+            run(frame, &rheology.pass, &constants)?;
+        }
         for (at, &[kept, gained]) in self.coefficients.iter().enumerate() {
-            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, ..self.constants })?;
+            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, ..constants })?;
         }
-        run(frame, &self.predict, &self.constants)?;
+        if let Some(rheology) = &self.rheology {
+            run(frame, &rheology.strain, &constants)?;
+        }
+        run(frame, &self.predict, &constants)?;
         for at in 0..self.corrections as usize {
-            run(frame, &self.density[at % 2], &self.constants)?;
-            run(frame, &self.correct[at % 2], &self.constants)?;
+            run(frame, &self.density[at % 2], &constants)?;
+            run(frame, &self.correct[at % 2], &constants)?;
         }
-        run(frame, &self.finish[to], &self.constants)
+        run(frame, &self.finish[to], &constants)
     }
 
     /// Iterations of a step's viscosity.
     pub fn iterations(&self) -> usize {
         self.coefficients.len()
+    }
+
+    /// Viscosities over the melt's by cells; `None` where it is one for all.
+    pub fn viscosities(&self) -> Option<&Arc<Buffer>> {
+        self.rheology.as_ref().map(|rheology| &rheology.viscosities)
+    }
+
+    /// Places of the last step by cells, metres.
+    pub fn arrived(&self) -> &Arc<Buffer> {
+        &self.predicted[self.corrections as usize % 2]
+    }
+
+    /// Mean temperature of the particles that radiate, of the first so many by cells; none where none does.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn skin_k(&self, device: &Arc<Device>, particles: usize) -> Result<Option<f64>, Error> {
+        let heat = bytemuck::pod_collect_to_vec::<u8, [f32; 2]>(&read_buffer(device, &self.heat)?);
+        let skin =
+            heat.iter().take(particles).filter(|[_, steepness]| *steepness > 0.0).map(|[kelvin, _]| f64::from(*kelvin));
+        let (count, sum) = skin.fold((0u32, 0.0), |(count, sum), kelvin| (count + 1, sum + kelvin));
+        Ok((count > 0).then(|| sum / f64::from(count)))
     }
 
     /// Fails where a device's loops left particles out.
@@ -256,9 +368,11 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let cells = scale.cells(parameters, parameters.particles);
     let sides = parameters.space_m.as_dvec3() / DVec3::from(cells.counts.map(f64::from));
     let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
-    let iterations = chebyshev::needed(scale.stiffness) + 2.0 * f64::from(parameters.flow.corrections);
+    let iterations =
+        chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 2.0;
+    let [columns, _, rows] = parameters.density.map(f64::from);
     Estimate {
-        bytes: vec![("particles", 88.0 * particles + sort::bytes(&cells))],
+        bytes: vec![("particles", 100.0 * particles + sort::bytes(&cells)), ("density", TEXEL * columns * rows)],
         buffers: vec![("particles", 16.0 * particles)],
         passes: Some(("corrections", iterations as u64 + 24)),
         invocations: vec![("particles", particles * looked_at * iterations)],
@@ -284,5 +398,14 @@ fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, width: u32) 
         gained: 0.0,
         margin_m: scale.margin_m as f32,
         periodic: f32::from(u8::from(flow.sides == parameters::Sides::Periodic)),
+        laplacian: scale.laplacian as f32,
+        conduction: (2.0 * scale.heat_stiffness * scale.laplacian) as f32,
+        given: (scale.given * kernel::face_per_steepness()) as f32,
+        radiance: scale.radiance as f32,
+        ambient_k: flow.heat.ambient_k,
+        melt_k: flow.heat.melt_k,
+        solidus_k: flow.heat.solidus_k,
+        per_viscosity: 1.0 / flow.viscosity_pa_s.max(f32::MIN_POSITIVE),
+        stiffest: scale.stiffest as f32,
     }
 }

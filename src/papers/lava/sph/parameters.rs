@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use super::heat::Heat;
+use super::vent::Vent;
 use crate::field;
 use crate::measure::parameter::{Choice, Cost, Extents, Field, Parameter, Range, Value as _};
 
@@ -55,6 +57,10 @@ pub struct Flow {
     pub sides: Sides,
     /// Corrections of the density in a step, 1 to 100.
     pub corrections: u32,
+    /// Heat, and what it makes of the viscosity.
+    pub heat: Heat,
+    /// Vent that it comes out of, if it does not stand there at the start.
+    pub vent: Vent,
 }
 
 impl Default for Flow {
@@ -66,7 +72,9 @@ impl Default for Flow {
             gravity_m_s2: 9.81,
             slope_deg: 10.0,
             sides: Sides::Walls,
-            corrections: 6,
+            corrections: 12,
+            heat: Heat::default(),
+            vent: Vent::default(),
         }
     }
 }
@@ -77,18 +85,19 @@ const BLOCK: Field<Flow, Extents<f32, 3>> =
 impl Flow {
     /// Every number that a user can set, once.
     pub fn declared() -> Vec<Parameter<Flow>> {
-        vec![
+        let heat = Heat::declared().into_iter().map(|p| p.inside(|s: &Self| &s.heat, |s| &mut s.heat));
+        let motion = vec![
             Parameter::new("block", BLOCK)
                 .placeholder("XxYxZ")
                 .range(Range::above(0.0).to(1000.0))
                 .unit("metres")
-                .help("With sph: sides of the block of lava at the start, in the space's first corner, at most as long as its")
+                .help("With sph: sides of the block of lava at the start, in the space's first corner, at most as long as its; with an effusion rate the volume that comes out")
                 .section("9")
                 .cost(Cost::Buffers),
             Parameter::new("viscosity", field!(Flow.viscosity_pa_s))
                 .range(Range::from(0.0).to(1e6))
                 .unit("pascal seconds")
-                .help("With sph: viscosity of the lava")
+                .help("With sph: viscosity of the lava, at its temperature at the start")
                 .section("9")
                 .cost(Cost::Buffers),
             Parameter::new("melt-density", field!(Flow.melt_kg_m3))
@@ -118,7 +127,9 @@ impl Flow {
                 .help("With sph: corrections of the density in a step")
                 .section("9")
                 .cost(Cost::Buffers),
-        ]
+        ];
+        let vent = Vent::declared().into_iter().map(|p| p.inside(|s: &Self| &s.vent, |s| &mut s.vent));
+        motion.into_iter().chain(heat).chain(vent).collect()
     }
 
     /// Name and value of the first number that is not the default's.

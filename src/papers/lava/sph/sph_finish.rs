@@ -7,14 +7,21 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from the last places into a state.
+/// Makes the pass from the last places, temperatures and rates of strain into a state.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
-pub fn sph_finish(shaders: &ShaderLibrary, sort: &Sort, predicted: &Arc<Buffer>, state: &State) -> Result<Pass, Error> {
+pub fn sph_finish(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    [predicted, heat, change]: [&Arc<Buffer>; 3],
+    state: &State,
+) -> Result<Pass, Error> {
     over_cells("sph-finish", "lava/sph-finish.comp", sort)
         .with("predicted", predicted)
         .with("items", &sort.items)
+        .with("heat", heat)
+        .with("change", change)
         .with("positions", &state.positions)
         .with("velocities", &state.velocities)
         .build(shaders)

@@ -6,7 +6,8 @@ use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change.
+/// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change,
+/// `viscosities` those of the particles over the melt's where they are not all the same.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -15,11 +16,19 @@ pub fn sph_viscosity(
     sort: &Sort,
     [from, to]: [&Arc<Buffer>; 2],
     [pushed, change]: [&Arc<Buffer>; 2],
+    viscosities: Option<&Arc<Buffer>>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-viscosity", "lava/sph-viscosity.comp", sort)
+    let shader = match viscosities {
+        None => "lava/sph-viscosity-constant.comp",
+        Some(_) => "lava/sph-viscosity-basalt.comp",
+    };
+    let pass = over_cells("sph-viscosity", shader, sort)
         .with("pushed", pushed)
         .with("from", from)
         .with("to", to)
-        .with("change", change)
-        .build(shaders)
+        .with("change", change);
+    match viscosities {
+        None => pass.build(shaders),
+        Some(viscosities) => pass.with("viscosities", viscosities).build(shaders),
+    }
 }

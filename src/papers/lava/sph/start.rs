@@ -1,14 +1,28 @@
-//! A block of lava at rest.
+//! The lava at the start: a block at rest, or a pool of particles, each where it comes out of the vent.
 
 use glam::Vec3;
 
 use super::super::parameters::Parameters;
 use super::super::start::Particles;
+use super::Scale;
+use super::parameters::Flow;
 use crate::scene::random::Random;
 
-/// Particles of a block in the space's first corner, layer by layer from the floor, at rest: as a lattice, shaken by a
+/// The particles in the order in which they come.
+pub fn particles(parameters: &Parameters) -> Particles {
+    let Flow { vent, heat, .. } = &parameters.flow;
+    let positions = if vent.effusion_m3_s > 0.0 {
+        vent.places(parameters, Scale::of(parameters).margin_m)
+    } else {
+        block(parameters)
+    };
+    let count = positions.len();
+    Particles { positions, velocities: vec![Vec3::ZERO; count], temperatures_k: vec![heat.melt_k; count] }
+}
+
+/// Places of a block in the space's first corner, layer by layer from the floor: as a lattice, shaken by a
 /// twentieth of its distance so that no symmetry lasts.
-pub fn block(parameters: &Parameters) -> Particles {
+fn block(parameters: &Parameters) -> Vec<Vec3> {
     let block_m = parameters.flow.block_m;
     let spacing_m = parameters.flow.spacing_m(parameters.particles) as f32;
     let along = |side_m: f32| (side_m / spacing_m).round().clamp(1.0, parameters.particles as f32) as u32;
@@ -23,6 +37,5 @@ pub fn block(parameters: &Parameters) -> Particles {
         let shaken = Vec3::from_array([(); 3].map(|()| shake.range(-0.05, 0.05))) * spacing_m;
         (at * step_m + shaken).clamp(Vec3::ZERO, parameters.space_m)
     };
-    let positions: Vec<Vec3> = (0..parameters.particles).map(place).collect();
-    Particles { velocities: vec![Vec3::ZERO; positions.len()], positions }
+    (0..parameters.particles).map(place).collect()
 }

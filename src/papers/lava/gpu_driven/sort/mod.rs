@@ -66,7 +66,6 @@ pub struct Sort {
     /// Of each digit, the lowest first.
     digits: Vec<Digit>,
     sort_sum: Pass,
-    sums: Vec<SumConstants>,
     /// One for each texture of positions.
     arrange: Vec<Pass>,
     cell_starts: Pass,
@@ -85,7 +84,7 @@ pub struct Sort {
 struct Digit {
     sort_count: Pass,
     sort_scatter: Pass,
-    constants: SortConstants,
+    shift: u32,
 }
 
 /// Words of the buffer of counts: those of all digits and blocks, the sums of their runs, and of the runs of those.
@@ -126,8 +125,7 @@ impl Sort {
             Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
         };
         let items = [buffer("items-a", 2 * particles)?, buffer("items-b", 2 * particles)?];
-        let layout = Counts::of(particles);
-        let counts = buffer("sort-counts", layout.third_sum + 1)?;
+        let counts = buffer("sort-counts", Counts::of(particles).third_sum + 1)?;
         let places = [buffer("sorted-x", particles)?, buffer("sorted-y", particles)?, buffer("sorted-z", particles)?];
         let starts = buffer("cell-starts", cells.count() + 1)?;
         let pieces = density::pieces(particles);
@@ -139,18 +137,10 @@ impl Sort {
             Ok(Digit {
                 sort_count: sort_count(shaders, from, &counts)?,
                 sort_scatter: sort_scatter(shaders, [from, to], &counts)?,
-                constants: SortConstants {
-                    items: particles,
-                    blocks: layout.blocks,
-                    shift: BITS * n,
-                    first_sum: layout.first_sum,
-                    second_sum: layout.second_sum,
-                },
+                shift: BITS * n,
             })
         };
         let digits = (0..cells.bits().div_ceil(BITS)).map(digit).collect::<Result<Vec<_>, _>>()?;
-        let ends = [0, layout.first_sum, layout.second_sum, layout.third_sum];
-        let sums = ends.windows(2).map(|ends| SumConstants { first: ends[0], count: ends[1] - ends[0], to: ends[1] });
         let sorted = &items[digits.len() % 2];
         let constants = CellConstants {
             space_m: parameters.space_m.to_array(),
@@ -163,7 +153,6 @@ impl Sort {
             cell_keys,
             digits,
             sort_sum: sort_sum(shaders, &counts)?,
-            sums: sums.collect(),
             arrange: arrange(context, positions, sorted, &places, &reached)?,
             cell_starts: cell_starts(shaders, sorted, &starts)?,
             constants,
@@ -175,31 +164,36 @@ impl Sort {
         })
     }
 
-    /// Sorts the particles of the texture with this index.
+    /// Sorts the first `particles`, at least one, of the texture with this index.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, state: usize, particles: u32) -> Result<(), Error> {
+        let constants = CellConstants { particles, ..self.constants };
         let listed = |frame: &mut Frame<'_>, pass: &Pass, count: u32| {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).elements(count);
+                dispatch.constants(&constants).elements(count);
             })
         };
-        listed(frame, &self.cell_keys[state], self.constants.particles)?;
-        for Digit { sort_count, sort_scatter, constants } in &self.digits {
+        let Counts { blocks, first_sum, second_sum, third_sum } = Counts::of(particles);
+        let sums = [[0, first_sum], [first_sum, second_sum], [second_sum, third_sum]]
+            .map(|[first, end]| SumConstants { first, count: end - first, to: end });
+        listed(frame, &self.cell_keys[state], particles)?;
+        for Digit { sort_count, sort_scatter, shift } in &self.digits {
+            let constants = SortConstants { items: particles, blocks, shift: *shift, first_sum, second_sum };
             frame.compute(sort_count, |dispatch| {
-                dispatch.constants(constants).elements(constants.blocks);
+                dispatch.constants(&constants).elements(blocks);
             })?;
-            for sum in &self.sums {
+            for sum in &sums {
                 frame.compute(&self.sort_sum, |dispatch| {
                     dispatch.constants(sum).elements(sum.count.div_ceil(RUN));
                 })?;
             }
             frame.compute(sort_scatter, |dispatch| {
-                dispatch.constants(constants).elements(constants.blocks);
+                dispatch.constants(&constants).elements(blocks);
             })?;
         }
-        listed(frame, &self.arrange[state], self.constants.particles)?;
+        listed(frame, &self.arrange[state], particles.max(constants.pieces))?;
         listed(frame, &self.cell_starts, self.cell_count + 1)
     }
 }

@@ -1,0 +1,72 @@
+#version 450
+
+// Temperatures at the end of the step: conduction by the symmetric form of Cleary and Monaghan (1999), in which what one
+// particle loses another gains, and radiation at the free surface by Stefan and Boltzmann's law. A particle is at the surface
+// where the smoothed amount of lava falls off steeply (Mueller et al. 2003); the steepness is the share of its face. The face is
+// half a distance of particles away from the middle, and as hot as what it radiates and what reaches it agree.
+
+layout(local_size_x = 64) in;
+
+#include "common/elements.glsl"
+#include "lava/sph.glsl"
+
+layout(set = 0, binding = 4, std430) readonly buffer Pushed {
+    vec4 list[]; // metres per second, and kelvin as the step begins
+} pushed;
+
+layout(set = 0, binding = 5, std430) buffer Heat {
+    vec2 list[]; // kelvin as the step ends, and the steepness of a particle's face, 0 inside
+} heat;
+
+// Of the amount of lava per h: on a level face 1.1 in the first layer and 0.08 in the second, by the layer that lies close to
+// the floor up to 0.5.
+const float STEEP = 0.6;
+
+// Gradient of the walls' share, times h, where two walls meet with each the other's part left out: it would be a face of lava.
+vec3 wall_gradient_once(Walls walls) {
+    vec4 q = walls.sides_q;
+    float below = 1.0 - beyond(walls.floor_q);
+    float along_x = 1.0 - beyond(q.x) - beyond(q.y);
+    float along_z = 1.0 - beyond(q.z) - beyond(q.w);
+    return wall_gradient(walls) * vec3(below * along_z, along_x * along_z, below * along_x);
+}
+
+// The root of T_f + radiance (T_f^4 - T_a^4) = T by Newton's method, which comes down to it: the function is convex.
+float face_of(float kelvin) {
+    float squared = flow.ambient_k * flow.ambient_k;
+    float face = kelvin;
+    for (int i = 0; i < 8; i++) {
+        float cubed = face * face * face;
+        float excess = face - kelvin + flow.radiance * (cubed * face - squared * squared);
+        face -= excess / (1.0 + 4.0 * flow.radiance * cubed);
+    }
+    return face;
+}
+
+void main() {
+    uint at = element(64u);
+    if (at >= flow.particles) {
+        return;
+    }
+    vec3 place_m = began_m(at);
+    float kelvin = pushed.list[at].w;
+    float conducted = 0.0;
+    vec3 gradient = vec3(0.0);
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_at(place_m, x, z);
+            uint end = min(stretch.y, stretch.x + MOST);
+            for (uint i = stretch.x; i < end; i++) {
+                vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+                float weight = slope(length(way));
+                conducted -= weight * (pushed.list[i].w - kelvin);
+                gradient += weight * way;
+            }
+        }
+    }
+    float steepness = length(flow.volume * gradient + wall_gradient_once(walls_at(place_m)));
+    steepness = steepness > STEEP ? steepness : 0.0;
+    kelvin += flow.conduction * conducted;
+    kelvin -= flow.given * steepness * (kelvin - face_of(kelvin));
+    heat.list[at] = vec2(kelvin, steepness);
+}

@@ -1,0 +1,56 @@
+#version 450
+
+// Temperature of the surface in the middle of each column of the grid: the particles' around it, by the kernel along x and z,
+// and by how far above or below the surface they lie, half the weight for each half distance of particles. They are taken
+// where the step has brought them, from the cells in which it began.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "lava/sph.glsl"
+
+layout(set = 0, binding = 4, std430) readonly buffer Predicted {
+    vec4 list[]; // metres
+} predicted;
+
+layout(set = 0, binding = 5, std430) readonly buffer Heat {
+    vec2 list[]; // kelvin as the step ends
+} heat;
+
+layout(set = 0, binding = 6) uniform texture2D normal_height;
+
+layout(set = 0, binding = 7, rgba32f) uniform image2D temperatures;
+
+const float HALVES_A_SUPPORT = 4.8; // the kernel's radius is 2.4 distances of particles
+const float MOST_HALVINGS = 40.0;
+
+void main() {
+    ivec2 column = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 columns = imageSize(temperatures);
+    if (column.x >= columns.x || column.y >= columns.y) {
+        return;
+    }
+    vec2 middle_m = (vec2(column) + 0.5) / vec2(columns) * flow.space_m.xz;
+    vec3 place_m = vec3(middle_m.x, texelFetch(normal_height, column, 0).w, middle_m.y);
+    ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
+    int highest = int(flow.counts.y) - 1;
+    float weights = 0.0;
+    float sum = 0.0;
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
+            // Of too many the highest.
+            uint first = max(stretch.x, max(stretch.y, MOST) - MOST);
+            for (uint i = first; i < stretch.y; i++) {
+                vec3 way = apart(place_m - predicted.list[i].xyz) / flow.support_m;
+                float halvings = min(HALVES_A_SUPPORT * abs(way.y), MOST_HALVINGS);
+                float weight = kernel(length(way.xz)) * exp2(-halvings);
+                weights += weight;
+                sum += weight * heat.list[i].x;
+            }
+        }
+    }
+    bool is_there = weights > 0.0;
+    imageStore(temperatures, column, is_there ? vec4(sum / weights, 1.0, 0.0, 0.0) : vec4(0.0));
+}

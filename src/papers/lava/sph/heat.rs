@@ -1,0 +1,134 @@
+//! Numbers of the lava's heat, and of what it makes of the viscosity (chapter 9, "Temperature variables and heat transfer
+//! simulations").
+
+use crate::field;
+use crate::measure::parameter::{Choice, Cost, Parameter, Range};
+
+/// Stefan and Boltzmann's constant, watts per square metre and K^4: of the SI's exact values (2019).
+const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
+
+/// Law that the viscosity follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rheology {
+    /// One for all.
+    Constant,
+    /// Giordano and Dingwell (2003) by temperature, and a crust below the solidus.
+    Basalt,
+}
+
+impl Choice for Rheology {
+    const ALL: &'static [Self] = &[Rheology::Constant, Rheology::Basalt];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("constant", "The viscosity is one for all"),
+        ("basalt", "It grows as a basalt cools, and below the solidus lava is a crust that yields to stress"),
+    ];
+}
+
+/// Heat and rheology, in the ranges of [`Heat::declared`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heat {
+    /// Temperature at the start in kelvin, 700 to 2000.
+    pub melt_k: f32,
+    /// Temperature around the lava in kelvin, 0 to 2000, at most that at the start.
+    pub ambient_k: f32,
+    /// Emissivity of the surface, 0 to 1.
+    pub emissivity: f32,
+    /// Thermal conductivity in watts per metre and kelvin, 0 to 100,000.
+    pub conductivity_w_mk: f32,
+    /// Heat capacity in joules per kilogram and kelvin, 1 to 100,000.
+    pub capacity_j_kgk: f32,
+    /// Law that the viscosity follows.
+    pub rheology: Rheology,
+    /// Temperature below which lava is a crust, kelvin, 300 to 2000.
+    pub solidus_k: f32,
+    /// Most viscosity that crust and cold lava have, pascal seconds, at least that of the melt and at most 1e9.
+    pub crust_pa_s: f32,
+}
+
+impl Default for Heat {
+    fn default() -> Self {
+        Heat {
+            melt_k: 1423.0,
+            ambient_k: 300.0,
+            emissivity: 0.95,
+            conductivity_w_mk: 1.5,
+            capacity_j_kgk: 1200.0,
+            rheology: Rheology::Constant,
+            solidus_k: 1273.0,
+            crust_pa_s: 2000.0,
+        }
+    }
+}
+
+impl Heat {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Heat>> {
+        vec![
+            Parameter::new("melt-temperature", field!(Heat.melt_k))
+                .range(Range::from(700.0).to(2000.0))
+                .unit("kelvin")
+                .help("With sph: temperature of the lava at the start, and of what comes out of a vent")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("ambient", field!(Heat.ambient_k))
+                .range(Range::from(0.0).to(2000.0))
+                .unit("kelvin")
+                .help("With sph: temperature that the surface radiates to, at most that at the start")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("emissivity", field!(Heat.emissivity))
+                .range(Range::from(0.0).to(1.0))
+                .help("With sph: emissivity of the surface; 0 keeps all heat")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("conductivity", field!(Heat.conductivity_w_mk))
+                .range(Range::from(0.0).to(1e5))
+                .unit("watts per metre and kelvin")
+                .help("With sph: thermal conductivity of the lava")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("heat-capacity", field!(Heat.capacity_j_kgk))
+                .range(Range::from(1.0).to(1e5))
+                .unit("joules per kilogram and kelvin")
+                .help("With sph: heat capacity of the lava; a hundredth of it makes heat a hundred times as fast")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("rheology", field!(Heat.rheology))
+                .help("With sph: what the viscosity follows from")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("solidus", field!(Heat.solidus_k))
+                .range(Range::from(300.0).to(2000.0))
+                .unit("kelvin")
+                .help("With basalt: temperature below which lava is a crust")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("crust-viscosity", field!(Heat.crust_pa_s))
+                .range(Range::from(0.0).to(1e9))
+                .unit("pascal seconds")
+                .help("With basalt: most viscosity that crust and cold lava have, at least the melt's; a step's iterations grow with its root")
+                .section("9")
+                .cost(Cost::Buffers),
+        ]
+    }
+
+    /// Diffusivity of heat, square metres per second, in lava of a density in kilograms per cubic metre.
+    pub fn diffusivity_m2_s(&self, melt_kg_m3: f32) -> f64 {
+        f64::from(self.conductivity_w_mk) / (f64::from(melt_kg_m3) * f64::from(self.capacity_j_kgk))
+    }
+
+    /// Heat that a face radiates over that which reaches it from half a distance of particles away for each kelvin, per K^3. Nothing reaches
+    /// the face of what does not conduct, so that it keeps its heat.
+    pub fn radiance(&self, spacing_m: f64) -> f64 {
+        let conductance_w_m2k = 2.0 * f64::from(self.conductivity_w_mk) / spacing_m;
+        if conductance_w_m2k > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k } else { 0.0 }
+    }
+
+    /// Most viscosity over the melt's.
+    pub fn stiffest(&self, viscosity_pa_s: f32) -> f64 {
+        match self.rheology {
+            Rheology::Constant => 1.0,
+            Rheology::Basalt => f64::from(self.crust_pa_s) / f64::from(viscosity_pa_s),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Pass `sph-rheology` (section 9): the viscosity of each particle by its temperature and the rate of strain that the last step left.
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass from rates of strain, in the fourth component of `change`, and temperatures; `viscosities` takes those of the particles over the melt's.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_rheology(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    [change, heat]: [&Arc<Buffer>; 2],
+    viscosities: &Arc<Buffer>,
+) -> Result<Pass, Error> {
+    over_cells("sph-rheology", "lava/sph-rheology.comp", sort)
+        .with("change", change)
+        .with("heat", heat)
+        .with("viscosities", viscosities)
+        .build(shaders)
+}

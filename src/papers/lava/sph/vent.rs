@@ -1,0 +1,176 @@
+//! Lava that comes out of a vent (chapter 9, "Improved particle simulation"), particle by particle from the pool.
+
+use glam::{DVec3, Vec3};
+
+use super::super::parameters::Parameters;
+use crate::field;
+use crate::measure::ParameterError;
+use crate::measure::parameter::{Cost, Parameter, Range};
+use crate::scene::random::Random;
+
+/// Most of the vent's room that one step fills.
+const MOST_FILLED: f64 = 0.1;
+
+/// The vent, in the ranges of [`Vent::declared`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vent {
+    /// Lava that comes out, cubic metres per second, 0 to 1,000,000; at 0 all of it stands there at the start.
+    pub effusion_m3_s: f32,
+    /// Its middle along x and z, metres, in the space.
+    pub middle_m: [f32; 2],
+    /// Its radius in metres, above 0 and at most 1000.
+    pub radius_m: f32,
+}
+
+impl Default for Vent {
+    fn default() -> Self {
+        Vent { effusion_m3_s: 0.0, middle_m: [0.5, 0.5], radius_m: 0.15 }
+    }
+}
+
+/// Particles that are out after a time: as many as the effusion has filled, to the nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inflow {
+    /// Particles in a step; none where all are there at the start.
+    per_step: Option<f64>,
+    /// The pool.
+    particles: u32,
+}
+
+impl Inflow {
+    /// Of these parameters, with so many particles.
+    pub fn of(parameters: &Parameters, particles: u32) -> Self {
+        let flow = &parameters.flow;
+        let step_m3 = f64::from(parameters.time_step_s) * f64::from(flow.vent.effusion_m3_s);
+        Inflow { per_step: (step_m3 > 0.0).then(|| step_m3 / flow.spacing_m(particles).powi(3)), particles }
+    }
+
+    /// Particles that are out after so many steps: at least the first.
+    pub fn out(&self, steps: u32) -> u32 {
+        match self.per_step {
+            None => self.particles,
+            Some(per_step) => ((f64::from(steps) * per_step).round() as u32).clamp(1, self.particles),
+        }
+    }
+}
+
+impl Vent {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Vent>> {
+        vec![
+            Parameter::new("effusion-rate", field!(Vent.effusion_m3_s))
+                .range(Range::from(0.0).to(1e6))
+                .unit("cubic metres per second")
+                .help("With sph: lava that comes out of a vent, up to the volume of the block; at 0 the block stands there at the start")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("vent", field!(Vent.middle_m))
+                .placeholder("X,Z")
+                .range(Range::from(0.0).to(1000.0))
+                .unit("metres")
+                .help("With an effusion rate: middle of the vent on the floor, in the space with all of its radius")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("vent-radius", field!(Vent.radius_m))
+                .range(Range::above(0.0).to(1000.0))
+                .unit("metres")
+                .help("With an effusion rate: radius of the vent, and height of the room above it where lava comes out")
+                .section("9")
+                .cost(Cost::Buffers),
+        ]
+    }
+
+    /// Checks what ranges of single numbers do not; the caller has checked those.
+    ///
+    /// # Errors
+    /// The first parameter that does not fit the others.
+    pub fn check(&self, parameters: &Parameters) -> Result<(), ParameterError> {
+        if self.effusion_m3_s == 0.0 {
+            let default = Vent::default();
+            let [x, z] = self.middle_m;
+            let problem = "does nothing without an `effusion-rate`";
+            ParameterError::check(self.middle_m == default.middle_m, "vent", format!("{x},{z}"), problem)?;
+            return ParameterError::check(self.radius_m == default.radius_m, "vent-radius", self.radius_m, problem);
+        }
+        let space = parameters.space_m;
+        let is_inside = |at: f32, side: f32| at >= self.radius_m && at + self.radius_m <= side;
+        let [x, z] = self.middle_m;
+        ParameterError::check(
+            is_inside(x, space.x) && is_inside(z, space.z) && self.radius_m <= space.y,
+            "vent",
+            format!("{x},{z}"),
+            &format!("must lie in the space with all of its radius, {} metres, and that height", self.radius_m),
+        )?;
+        let step_m3 = f64::from(parameters.time_step_s) * f64::from(self.effusion_m3_s);
+        ParameterError::check(
+            step_m3 <= MOST_FILLED * self.room_m3(),
+            "effusion-rate",
+            self.effusion_m3_s,
+            "would fill more than a tenth of the room above the vent in a step: widen it by `vent-radius`, or take a shorter \
+             `time-step`",
+        )
+    }
+
+    /// The room that lava comes out in: a cylinder as high as its radius.
+    fn room_m3(&self) -> f64 {
+        std::f64::consts::PI * f64::from(self.radius_m).powi(3)
+    }
+
+    /// Places in the room for so many particles, which fill it evenly however many follow each other: an additive sequence by
+    /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives.
+    pub fn places(&self, parameters: &Parameters, margin_m: f64) -> Vec<Vec3> {
+        /// The root of g^4 = g + 1.
+        const G: f64 = 1.220_744_084_605_759_6;
+        let mut random = Random::with_stream(parameters.seed, 3);
+        let first = DVec3::from_array([(); 3].map(|()| f64::from(random.unit())));
+        let step = DVec3::new(1.0 / G, 1.0 / (G * G), 1.0 / (G * G * G));
+        let radius_m = f64::from(self.radius_m);
+        let [x, z] = self.middle_m.map(f64::from);
+        let place = |number: u32| {
+            let DVec3 { x: turn, y: height, z: share } = (first + f64::from(number) * step).fract();
+            let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
+            let aside_m = radius_m * share.sqrt();
+            let height_m = margin_m + height * (radius_m - margin_m).max(0.0);
+            DVec3::new(x + aside_m * cosine, height_m, z + aside_m * sine)
+                .as_vec3()
+                .clamp(Vec3::ZERO, parameters.space_m)
+        };
+        (0..parameters.particles).map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::lava::{Flow, Simulation};
+
+    fn parameters(effusion_m3_s: f32) -> Parameters {
+        let vent = Vent { effusion_m3_s, ..Vent::default() };
+        Parameters { simulation: Simulation::Sph, flow: Flow { vent, ..Flow::default() }, ..Parameters::default() }
+    }
+
+    #[test]
+    fn as_many_particles_are_out_as_the_effusion_fills() {
+        let still = Inflow::of(&parameters(0.0), 40_000);
+        assert_eq!([0, 1, 1000].map(|steps| still.out(steps)), [40_000; 3]);
+        // 0.72 m^3 in 40,000 particles: 0.018 m^3/s are 1000 in a second of 30 steps.
+        let flowing = Inflow::of(&parameters(0.018), 40_000);
+        let found = [0, 1, 3, 30, 300, 1200, 1201, 100_000].map(|steps| flowing.out(steps));
+        assert_eq!(found, [1, 33, 100, 1000, 10_000, 40_000, 40_000, 40_000]);
+    }
+
+    #[test]
+    fn places_fill_the_room_evenly() {
+        let parameters = Parameters { particles: 4000, ..parameters(0.01) };
+        let vent = parameters.flow.vent;
+        let places = vent.places(&parameters, 0.01);
+        let mean = places.iter().sum::<Vec3>() / 4000.0;
+        assert!((mean - Vec3::new(0.5, 0.08, 0.5)).abs().max_element() < 2e-3, "{mean}");
+        for (at, place) in places.iter().enumerate() {
+            assert!((place.x - 0.5).hypot(place.z - 0.5) < 0.1501 && (0.0099..0.1501).contains(&place.y), "{place}");
+            // Those of one step keep apart.
+            assert!(places[at + 1..].iter().take(30).all(|other| other.distance(*place) > 0.01), "{at}");
+        }
+        assert_ne!(places, vent.places(&Parameters { seed: 2, ..parameters }, 0.01));
+    }
+}
