@@ -11,6 +11,8 @@ layout(set = 0, binding = 11, std430) buffer Counters {
     uint is_ended; // 1 where a device ended a loop over them
     uint lost_pixels; // of a frame so far, see fragments-nearest.comp
     uint most_lost_pixels; // of a frame before
+    uint earlier_fragments; // of the frame's bands before this one, and what of them is beyond 32 bits
+    uint earlier_fragments_high;
 };
 
 // No buffer has so many slots. Whoever is told of more takes back what he has counted, so that no count comes round to slots

@@ -19,11 +19,16 @@ void main() {
         heads[list_of(pixel)] = NONE;
     }
     if (gl_GlobalInvocationID.x == 0u && gl_GlobalInvocationID.y == 0u) {
+        // 0 in the first band of a frame, where the counts are those of the frame before.
+        uint is_later = min(band.list_row - band.picture_row, 1u);
+        uint low = (earlier_fragments + fragment_count) * is_later;
+        earlier_fragments_high = (earlier_fragments_high + (low < earlier_fragments ? 1u : 0u)) * is_later;
+        earlier_fragments = low;
         most_fragments = max(most_fragments, fragment_count);
         most_sections = max(most_sections, section_count);
         fragment_count = 0u;
         section_count = 0u;
         most_lost_pixels = max(most_lost_pixels, lost_pixels);
-        lost_pixels *= min(band.list_row - band.picture_row, 1u);
+        lost_pixels *= is_later;
     }
 }

@@ -117,10 +117,33 @@ pub struct Built<S: Study> {
     pub paper: S::Paper,
     /// Milliseconds of making them, pipelines included.
     pub build_ms: f64,
-    /// Every live resource of the variant, without its prefix.
+    /// Every live resource of the variant, without its prefix: as it was made, or as it was last [weighed](Self::weigh).
     pub memory: Vec<MemoryUse>,
-    /// Greatest number of bytes allocated for it while it was made.
+    /// Greatest number of bytes allocated for it while it was made, or at any time since that it was weighed.
     pub peak_bytes: u64,
+    /// Prefix of its resources' names.
+    prefix: String,
+}
+
+impl<S: Study> Built<S> {
+    /// Looks at its resources again: a paper may replace its buffers by larger ones as frames ask for more.
+    pub fn weigh(&mut self, machine: &Machine) {
+        self.memory = memory_of(machine, &self.prefix);
+        self.peak_bytes = self.peak_bytes.max(self.memory.iter().map(|resource| resource.bytes).sum());
+    }
+}
+
+/// Every live resource whose name begins with the prefix, without it.
+fn memory_of(machine: &Machine, prefix: &str) -> Vec<MemoryUse> {
+    let mut memory = machine.device.live().memory();
+    memory.retain_mut(|resource| match resource.name.strip_prefix(prefix) {
+        Some(name) => {
+            resource.name = name.to_owned();
+            true
+        }
+        None => false,
+    });
+    memory
 }
 
 /// Makes the resources of a variant.
@@ -148,15 +171,8 @@ fn build_as<S: Study>(
     let paper = made.map_err(|error| machine.shaders.blamed(error))?;
     let build_ms = started.elapsed().as_secs_f64() * 1e3;
     let prefix = format!("{label}/");
-    let memory = live
-        .memory()
-        .into_iter()
-        .filter_map(|mut m| {
-            m.name = m.name.strip_prefix(&prefix)?.to_owned();
-            Some(m)
-        })
-        .collect();
-    Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
+    let memory = memory_of(machine, &prefix);
+    Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before, prefix })
 }
 
 /// A configuration to measure, with its [alternatives](Study::alternatives).
@@ -240,6 +256,7 @@ impl<S: Study> Bench<'_, S> {
         let mut papers: Vec<(&mut dyn Paper, _)> =
             built.iter_mut().map(|b| (&mut b.paper as &mut dyn Paper, &machine.shaders)).collect();
         let measurements = measure_settled(&machine.device, &mut machine.recorder, &mut papers, schedule, watch)?;
+        built.iter_mut().for_each(|built| built.weigh(machine));
         let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
         let metrics = study.metrics(machine, &mut measured)?;
         measured.iter_mut().try_for_each(|(built, _)| inspect(machine, &mut built.paper))?;

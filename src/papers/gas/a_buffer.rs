@@ -93,6 +93,18 @@ impl ABuffer {
         })
     }
 
+    /// Fragments that all bands of the last frame have wanted.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn wanted_fragments(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
+        let counters = read::<CountersBlock>(shaders, &self.counters)?;
+        let of_frame = |c: &CountersBlock| {
+            (u64::from(c.earlier_fragments_high) << 32) + u64::from(c.earlier_fragments) + u64::from(c.fragment_count)
+        };
+        Ok(counters.iter().map(of_frame).sum())
+    }
+
     /// The most triangles of a tile that any band of any frame has had.
     ///
     /// # Errors

@@ -238,6 +238,10 @@ host_block! {
         pub lost_pixels: u32,
         /// Most such pixels of a frame before it.
         pub most_lost_pixels: u32,
+        /// Fragments that the last frame's bands before the last wanted, the lower 32 bits.
+        pub earlier_fragments: u32,
+        /// The upper 32 bits.
+        pub earlier_fragments_high: u32,
     }
 }
 

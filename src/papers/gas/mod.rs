@@ -247,16 +247,19 @@ impl Gas {
         self.passes.lists.demand(shaders)
     }
 
-    /// Fragments that the lists hold, by the slots that `demand` found them to want: linked lists fill every slot, in the
-    /// band of any frame that has the most of them; the others reserve more slots than they fill, and those of the last
-    /// band of the last frame are counted.
+    /// Fragments that the lists of the last frame hold, in all its bands. Linked lists fill every slot that they want;
+    /// the others reserve more slots than they fill, and the lists themselves are counted: nothing is known of them where
+    /// a band has replaced those of another.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
-    pub fn kept_fragments(&self, shaders: &ShaderLibrary, demand: Capacity) -> Result<u64, Error> {
+    pub fn kept_fragments(&self, shaders: &ShaderLibrary) -> Result<Option<u64>, Error> {
         match self.parameters.lists {
-            Lists::Linked => Ok(demand.fragments.into()),
-            Lists::Tiles | Lists::Nearest(_) => Ok(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum()),
+            Lists::Linked => Ok(Some(self.passes.lists.wanted_fragments(shaders)?)),
+            Lists::Tiles | Lists::Nearest(_) if (self.passes.lists.capacity.rows as usize) < self.rows.len() => Ok(None),
+            Lists::Tiles | Lists::Nearest(_) => {
+                Ok(Some(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum()))
+            }
         }
     }
 

@@ -326,7 +326,7 @@ impl Study for Setup {
             };
             let surfaces_ms = gpu_ms(&LIST_PASSES);
             let mut results = entries([
-                ("fragments", json!(built.paper.kept_fragments(&machine.shaders, demand)?)),
+                ("fragments", json!(built.paper.kept_fragments(&machine.shaders)?)),
                 ("fragment_slots", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
                 ("rows", json!(demand.rows)),

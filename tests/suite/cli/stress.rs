@@ -165,7 +165,15 @@ fn meshes_are_divided_and_objects_multiplied() {
     let layers =
         gas("stress --axis fragments --from 4 --factor 4 --variant no-volume --size 45x31 --budget 25 --quiet --out");
     layers.arg(out.path()).on_test_device().run().succeeded();
-    let found: Vec<f64> = steps(&record(out.path())).iter().map(|step| step["amount"].as_f64().unwrap()).collect();
+    let record = record(out.path());
+    // Lists that grew while frames were measured are as large in the record as they became.
+    for step in steps(&record) {
+        let resources = step["run"]["memory"]["by_resource"].as_array().unwrap();
+        let links = resources.iter().find(|resource| resource["name"] == "fragment-links").unwrap();
+        let slots = step["run"]["results"]["fragment_slots"].as_u64().unwrap();
+        assert!(links["bytes"].as_u64().unwrap() >= 16 * slots, "{links}, {slots}");
+    }
+    let found: Vec<f64> = steps(&record).iter().map(|step| step["amount"].as_f64().unwrap()).collect();
     // Twelve more layers of every pixel, whose diagonals are in both of their triangles.
     let more = (found[1] - found[0]) / (12.0 * 45.0 * 31.0);
     assert!((1.0..1.2).contains(&more), "{found:?}");

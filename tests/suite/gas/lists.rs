@@ -229,3 +229,31 @@ fn lists_that_overflow_grow() {
         }
     });
 }
+
+/// Fragments are counted over all bands of a frame, and anew in each frame.
+#[test]
+fn fragments_of_all_bands_are_counted() {
+    gpu_test(|device| {
+        let triangle = [(-20.0, -20.0), (220.0, -20.0), (-20.0, 200.0)];
+        let triangles: Vec<[Vec3; 3]> =
+            (0..5).map(|i| triangle.map(|(x, y)| unproject(DVec2::new(x, y), 2.0 + 0.5 * i as f32))).collect();
+        let objects = [Object { opacity: 0.3, ..object(&triangles) }];
+        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let whole = Drawing::of(device, Variant::NoVolume, &parameters(), &objects);
+        let expected = whole.lists.iter().map(|list| list.len() as u64).sum::<u64>();
+        let rows = HEIGHT.div_ceil(3);
+        let band = Capacity { rows, fragments: 10 * WIDTH * rows, sections: 1, chunks: 1 };
+        let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters(), &objects, Some(band)).unwrap();
+        let mut recorder = Recorder::new(device).unwrap();
+        for number in 0..3 {
+            recorder.run(Mode::Plain, |frame| gas.record(frame, number)).unwrap();
+            assert!(gas.settle(&shaders).unwrap());
+            assert_eq!(gas.kept_fragments(&shaders).unwrap(), Some(expected));
+        }
+        assert!(u64::from(gas.demand(&shaders).unwrap().fragments) < expected);
+        let tiles = Parameters { lists: Lists::Tiles, ..parameters() };
+        let mut gas = Gas::new(&shaders, "tiles", Variant::NoVolume, &tiles, &objects, Some(band)).unwrap();
+        recorder.run(Mode::Plain, |frame| gas.record(frame, 0)).unwrap();
+        assert_eq!(gas.kept_fragments(&shaders).unwrap(), None);
+    });
+}
