@@ -34,6 +34,7 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     uint fire_pool; // most fire particles
     uint smoke_pool; // most smoke particles
     float charring; // 1 of a material that chars and glows, 0 of wax
+    vec3 wind; // diagonals a second
     float evaporation_per_tick; // of the height of a puddle
 } constants;
 

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants LIGHT=sun,flames
+
 // Fire adds light, smoke covers what lies behind: colours are premultiplied, and the alpha of fire is 0. Both are
 // tested against the mesh's depth here and fade out where they come near it, so that no square shows where it cuts the
 // surface.
@@ -15,8 +17,15 @@ layout(location = 1) in float eye_depth; // distance along the view, diagonals
 layout(location = 2) in float age_fraction; // of its life
 layout(location = 3) in float own_random; // 0 to 1
 layout(location = 4) in float fire_flag; // 1, or 0 for smoke
+#ifdef LIGHT_FLAMES
+layout(location = 5) in vec3 smoke_light; // of the flames, linear RGB
+#endif
 
 layout(location = 0) out vec4 shaded;
+
+#ifdef LIGHT_FLAMES
+const float SMOKE_ALBEDO = 0.4;
+#endif
 
 float lattice(ivec2 at) {
     uint h = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u;
@@ -54,14 +63,21 @@ vec4 smoke(vec2 at, float age, float own) {
     float texture_noise = noise(1.6 * at + vec2(47.0 * own, 31.0 * own - 1.2 * age));
     float body = clamp(1.0 - length(at) - 0.7 * (texture_noise - 0.3), 0.0, 1.0);
     float alpha = 0.3 * body * smoothstep(0.0, 0.2, age) * (1.0 - age);
-    // Young smoke is lit by the fire beneath it.
+    // Young smoke is lit by the fire beneath it: by a rule of its age where flames shine on nothing else.
     vec3 grey = mix(vec3(0.11, 0.075, 0.05), vec3(0.1), smoothstep(0.0, 0.5, age));
+#ifdef LIGHT_FLAMES
+    grey = vec3(0.1) + SMOKE_ALBEDO * smoke_light;
+#endif
     return vec4(grey * alpha, alpha);
 }
 
 void main() {
-    float mesh = texelFetch(mesh_depth, ivec2(gl_FragCoord.xy), 0).x;
-    float before_mesh = billboards.depth_scale / (billboards.depth_offset + mesh) - eye_depth;
+#ifdef LIGHT_FLAMES
+    ivec2 pixel = layer_pixel(ivec2(gl_FragCoord.xy));
+#else
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+#endif
+    float before_mesh = eye_distance(texelFetch(mesh_depth, pixel, 0).x) - eye_depth;
     if (before_mesh <= 0.0) {
         discard;
     }

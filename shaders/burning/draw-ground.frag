@@ -5,6 +5,7 @@
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
 #include "burning/ash.glsl"
+#include "burning/light-flames.glsl"
 
 layout(set = 0, binding = 71, std430) readonly buffer Ash {
     uint ash[];
@@ -61,5 +62,6 @@ void main() {
     vec3 ground = GROUND * (0.9 + 0.2 * noise(position.xz * 24.0));
     float light = view.ambient + (1.0 - view.ambient) * view.to_light.y;
     float alpha = 1.0 - smoothstep(FADES_FROM, FADES_TO, length(position.xz));
-    shaded = vec4(mix(ground, ASH_COLOR * (0.7 + 0.3 * grain), covered) * light * alpha, alpha);
+    vec3 albedo = mix(ground, ASH_COLOR * (0.7 + 0.3 * grain), covered);
+    shaded = vec4(shone_on(albedo, light, position, vec3(0.0, 1.0, 0.0)) * alpha, alpha);
 }

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants LIGHT=sun,flames
+
 // A surface of several materials.
 
 #include "burning/lit.glsl"

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants LIGHT=sun,flames
+
 // A surface that a picture covers, repeated beyond its edges. The picture's levels stand below one another in one image
 // and are filtered here, for devices filter with 8 bits or more: between the four texels around a coordinate, and
 // between the two levels whose texels come nearest to a pixel's size.

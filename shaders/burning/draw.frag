@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants LIGHT=sun,flames
+
 // A surface of one albedo, or of the colours of areas or blocks.
 
 #include "burning/lit.glsl"

@@ -22,3 +22,11 @@ struct Particle {
 vec3 unit(uvec3 h) {
     return vec3(h >> 8u) / 16777216.0;
 }
+
+// Half the square of a flame, times its height and the particle's radius.
+const vec2 FLAME_SIZE = vec2(0.75, 1.15);
+
+// A flame is tall, swells at once and tapers; `own` is a random number of its own.
+float flame_height(float age, float own) {
+    return smoothstep(0.0, 0.15, age) * (1.0 - 0.5 * age) * (0.75 + 0.25 * own);
+}

@@ -1,7 +1,8 @@
-// Two-sided Lambert and ambient light on the charring surface, with the glow of its combustion-ready edge.
+// Two-sided Lambert and ambient light, and that of the flames, on the charring surface, with the glow of its combustion-ready edge.
 
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
+#include "burning/light-{LIGHT}.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 rest_position;
@@ -20,7 +21,7 @@ vec4 shone(vec3 pattern, vec3 own_albedo, float charring, vec3 glow) {
     // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
     vec3 albedo = color.rgb + (1.0 - charring * normal.w) * own_albedo * (pattern - 1.0);
     float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);
-    return vec4(albedo * light + glow, 1.0);
+    return vec4(shone_on(albedo, light, position, n) + glow, 1.0);
 }
 
 // Of an object of one material.

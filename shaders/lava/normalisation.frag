@@ -6,7 +6,7 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "lava/tone.glsl"
+#include "common/tone.glsl"
 #include "lava/encoding.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D accumulated_colors;

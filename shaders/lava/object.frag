@@ -7,7 +7,7 @@
 
 #include "lava/scene.glsl"
 #include "lava/object.glsl"
-#include "lava/tone.glsl"
+#include "common/tone.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D visibility;
 

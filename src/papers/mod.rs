@@ -3,6 +3,7 @@
 mod device_mesh;
 #[cfg(test)]
 mod layout;
+mod tone;
 mod triangle_tree;
 
 use crate::measure::study::Visitor;

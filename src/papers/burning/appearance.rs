@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::parameters::{Look, Material, Parameters, Shading, Variant};
+use super::parameters::{Heat, Look, Material, Parameters, Shading, Variant};
 
 impl Parameters {
     /// The material of the surface; a texture has none.
@@ -28,6 +28,14 @@ impl Parameters {
         }
     }
 
+    /// The way that heat takes.
+    pub fn heat(&self) -> Heat {
+        self.heat.unwrap_or(match self.look {
+            Look::Natural => Heat::Surface,
+            Look::Dissertation => Heat::Air,
+        })
+    }
+
     /// True where parts that nothing holds fall.
     pub fn collapses(&self, variant: Variant) -> bool {
         self.look == Look::Natural && self.collapse && variant.removes()
@@ -43,8 +51,13 @@ impl Parameters {
         self.has_ground() || self.collapses(variant)
     }
 
+    /// True where the picture is made of linear light, which the flames add to.
+    pub fn has_linear_light(&self) -> bool {
+        self.look == Look::Natural && self.shading == Shading::Lit
+    }
+
     /// True where the ground is drawn.
     pub fn has_ground(&self) -> bool {
-        self.look == Look::Natural && self.ground && self.shading == Shading::Lit
+        self.has_linear_light() && self.ground
     }
 }

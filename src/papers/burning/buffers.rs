@@ -49,6 +49,7 @@ host_block! {
         fire_pool: u32,
         smoke_pool: u32,
         charring: f32,
+        wind: Vec3,
         evaporation_per_tick: f32,
     }
 }
@@ -413,6 +414,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         fire_pool: p.fire,
         smoke_pool: p.smoke,
         charring: if p.chars(variant) { 1.0 } else { 0.0 },
+        wind: p.wind,
         evaporation_per_tick: (f64::from(p.evaporation_per_s) * tick_s) as f32,
     }
 }

@@ -27,6 +27,9 @@ host_block! {
     }
 }
 
+/// Format of linear light.
+pub(super) const LIGHT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
 /// Direction to the light, not of unit length, and its ambient fraction.
 const TO_LIGHT: Vec3 = Vec3::new(0.45, 0.75, 0.6);
 const AMBIENT: f32 = 0.35;
@@ -43,6 +46,8 @@ pub struct Draw {
     pub depth: Arc<ImageView>,
     /// 8-bit sRGB.
     pub picture: Arc<ImageView>,
+    /// Linear light that `tone` makes the picture of; else the picture.
+    pub target: Arc<ImageView>,
     /// Of an object that a picture covers.
     pub surface: Option<Surface>,
 }
@@ -55,7 +60,7 @@ impl Draw {
         label: &str,
         (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
-        appearances: Option<&Appearances>,
+        (appearances, fire_lights): (Option<&Appearances>, Option<&Arc<Buffer>>),
         model: &Model,
     ) -> Result<Self, Error> {
         let device = shaders.device();
@@ -65,6 +70,10 @@ impl Draw {
         };
         let depth = target("depth", vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
+        let target = match fire_lights {
+            None => picture.clone(),
+            Some(_) => target("radiance", LIGHT, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
+        };
         let camera = framing::camera(parameters, model);
         let block = view_block(parameters, &camera);
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
@@ -79,8 +88,16 @@ impl Draw {
             Some(texture) => Some(Surface::new(shaders, label, texture, coordinates)?),
         };
         let (vertex, fragment) = shaders_of(variant, parameters);
-        let mut pass =
-            Pass::graphics("draw", "3.8", &format!("burning/{vertex}.vert"), &format!("burning/{fragment}.frag"));
+        let light = match (fragment, fire_lights) {
+            ("draw-normals", _) => "",
+            (_, None) => "-sun",
+            (_, Some(_)) => "-flames",
+        };
+        let fragment_shader = format!("burning/{fragment}{light}.frag");
+        let mut pass = Pass::graphics("draw", "3.8", &format!("burning/{vertex}.vert"), &fragment_shader);
+        if let Some(fire_lights) = fire_lights {
+            pass = pass.with("FireLights", fire_lights);
+        }
         pass = match parameters.shading {
             Shading::Areas => pass.with("Labels", &buffers.labels),
             Shading::Blocks => pass.with("Cells", &buffers.cells),
@@ -107,10 +124,10 @@ impl Draw {
             .with("Colors", &buffers.colors)
             .indices(&buffers.stream)
             .indirect(&buffers.arguments)
-            .color(&picture, Load::Clear(parameters.background.extend(1.0).to_array()), Blend::Replace)
+            .color(&target, Load::Clear(parameters.background.extend(1.0).to_array()), Blend::Replace)
             .depth(&depth, FAR, DepthTest::LessWrite)
             .build(shaders)?;
-        Ok(Draw { pass, camera, view, depth, picture, surface })
+        Ok(Draw { pass, camera, view, depth, picture, target, surface })
     }
 
     /// Sets the camera of the next frames.

@@ -34,13 +34,19 @@ pub struct DrawGround {
 impl DrawGround {
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, draw: &Draw, ash: &Arc<Buffer>) -> Result<Self, Error> {
+    pub fn new(
+        shaders: &ShaderLibrary,
+        buffers: &Buffers,
+        draw: &Draw,
+        (ash, fire_lights): (&Arc<Buffer>, &Arc<Buffer>),
+    ) -> Result<Self, Error> {
         let pass = Pass::graphics("draw-ground", "", "burning/draw-ground.vert", "burning/draw-ground.frag")
             .with("constants", &buffers.constants)
             .with("view", &draw.view)
             .with("Ash", ash)
+            .with("FireLights", fire_lights)
             .topology(Topology::TriangleStrip)
-            .color(&draw.picture, Load::Keep, Blend::Premultiplied)
+            .color(&draw.target, Load::Keep, Blend::Premultiplied)
             .depth(&draw.depth, Load::Keep, DepthTest::LessWrite)
             .build(shaders)?;
         Ok(DrawGround { pass })

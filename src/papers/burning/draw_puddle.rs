@@ -1,5 +1,7 @@
 //! `draw-puddle`: the surface of the puddle on the ground. Ours.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::buffers::Buffers;
@@ -7,7 +9,7 @@ use super::draw::Draw;
 use super::ping_pong::{self, new};
 use super::puddle::{PUDDLE_CELLS, Puddle};
 use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
 
 /// The pass, for both ping-pong indices.
 pub struct DrawPuddle {
@@ -22,17 +24,22 @@ impl DrawPuddle {
         shaders: &ShaderLibrary,
         label: &str,
         buffers: &Buffers,
-        draw: &Draw,
+        (draw, fire_lights): (&Draw, Option<&Arc<Buffer>>),
         puddle: &Puddle,
     ) -> Result<Self, Error> {
         let indices: Vec<u32> = (0..PUDDLE_CELLS * PUDDLE_CELLS).flat_map(corners_of_cell).collect();
         let usage = vk::BufferUsageFlags::INDEX_BUFFER;
         let grid = upload(shaders.device(), &format!("{label}/puddle-grid"), usage, bytemuck::cast_slice(&indices))?;
-        let pass = Pass::graphics("draw-puddle", "", "burning/draw-puddle.vert", "burning/draw-puddle.frag")
+        let pass = |fragment: &str| Pass::graphics("draw-puddle", "", "burning/draw-puddle.vert", fragment);
+        let pass = match fire_lights {
+            None => pass("burning/draw-puddle-sun.frag"),
+            Some(lights) => pass("burning/draw-puddle-flames.frag").with("FireLights", lights),
+        };
+        let pass = pass
             .with("constants", &buffers.constants)
             .with("view", &draw.view)
             .indices(&grid)
-            .color(&draw.picture, Load::Keep, Blend::Replace)
+            .color(&draw.target, Load::Keep, Blend::Replace)
             .depth(&draw.depth, Load::Keep, DepthTest::LessWrite);
         let passes = ping_pong::build(shaders, pass, &[new("Heights", &puddle.heights)])?;
         Ok(DrawPuddle { passes, index_count: indices.len() as u32 })

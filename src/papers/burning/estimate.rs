@@ -6,7 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-use super::{chunks, draw_ground, falling, parts, puddle};
+use super::{chunks, draw_fire, draw_ground, falling, flame_lights, parts, puddle};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -14,7 +14,7 @@ use crate::scene::Mesh;
 const NUMBER: f64 = 4.0;
 const VECTOR: f64 = 16.0;
 /// Passes of a tick, and of a frame beside them.
-const PASSES: u64 = 38;
+const PASSES: u64 = 40;
 
 /// Vertices, edges and triangles of a mesh.
 #[derive(Clone, Copy)]
@@ -67,6 +67,7 @@ impl Parameters {
         let of_vertex = of_vertex + NUMBER * (3.0 + chunks::WORDS);
         let of_triangle = of_triangle + NUMBER * (1.0 + chunks::WORDS);
         let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
+        let has_light = self.has_linear_light();
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
         let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);
         // L of each vertex, epsilon of each edge, and the materials of the draw vertices.
@@ -76,7 +77,12 @@ impl Parameters {
         let of_triangle = of_triangle + if_so(several, 12);
         let of_look = if_so(collapses, parts::BYTES + falling::BYTES)
             + if_so(has_puddle, puddle::BYTES)
-            + if_so(self.has_ash(variant), draw_ground::BYTES);
+            + if_so(self.has_ash(variant), draw_ground::BYTES)
+            + if_so(has_light, flame_lights::BYTES);
+        // Linear light, and the layer of fire and smoke.
+        let [columns, rows] = draw_fire::layer_size(self).map(f64::from);
+        let of_light = if has_light { 8.0 * pixels } else { 0.0 };
+        let of_layer = if has_light && particles > 0.0 { 8.0 * columns * rows } else { 0.0 };
         let of_block =
             2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + VECTOR + size_of::<Group>() as f64;
 
@@ -95,7 +101,7 @@ impl Parameters {
                 ("look", of_look),
                 ("fire", 2.0 * size_of::<Particle>() as f64 * particles),
                 ("texture", NUMBER * texture),
-                ("size", 2.0 * NUMBER * pixels),
+                ("size", 2.0 * NUMBER * pixels + of_light + of_layer),
             ],
             passes: Some(("time-step", PASSES * (1 + ticks_a_frame.min(super::MOST_SLICES)))),
             draws: None,

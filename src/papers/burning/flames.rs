@@ -24,6 +24,9 @@ host_block! {
         up: Vec3,
         depth_scale: f32,
         depth_offset: f32,
+        layer_scale: u32,
+        last_pixel: [u32; 2],
+        fire_light: f32,
         _pad: [f32; 3],
     }
 }
@@ -174,6 +177,9 @@ fn billboards(parameters: &Parameters, camera: &Camera) -> BillboardsBlock {
         // For a distance w along the view, depth = -m22 + m32 / w, columns before rows.
         depth_scale: projection.w_axis.z,
         depth_offset: projection.z_axis.z,
+        layer_scale: parameters.fire_scale,
+        last_pixel: [parameters.width - 1, parameters.height - 1],
+        fire_light: parameters.fire_light,
         _pad: [0.0; 3],
     }
 }

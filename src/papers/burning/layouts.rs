@@ -2,6 +2,7 @@
 
 use super::buffers::{BlockCounts, Constants, Counts, RestVertex, VertexState};
 use super::draw::ViewBlock;
+use super::flame_lights::FireLight;
 use super::flames::{BillboardsBlock, Group, Particle};
 use super::materials::{Appearance, BlockLevels};
 use super::parts::{Part, Progress};
@@ -11,7 +12,7 @@ use crate::papers::layout::{block, check_block, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for shader in ["burning/internal-deformation.comp", "burning/normals-one.comp", "burning/draw.frag"] {
+    for shader in ["burning/internal-deformation.comp", "burning/normals-one.comp", "burning/draw-sun.frag"] {
         check_block::<Constants>(shader, "constants");
     }
     check_block::<ViewBlock>("burning/draw-surface.vert", "view");
@@ -22,9 +23,10 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<RestVertex>("burning/heat-boundary-vertices.comp", "Rest");
     check_list::<VertexState>("burning/internal-deformation.comp", "NewState");
     check_list::<BlockCounts>("burning/block-weights-placed.comp", "Blocks");
-    check_list::<TextureLevel>("burning/draw-textured.frag", "TextureLevels");
+    check_list::<TextureLevel>("burning/draw-textured-sun.frag", "TextureLevels");
     check_list::<BlockLevels>("burning/block-rotation-shell.comp", "BlockConstants");
-    check_list::<Appearance>("burning/draw-several.frag", "Substances");
+    check_list::<Appearance>("burning/draw-several-sun.frag", "Substances");
+    check_list::<FireLight>("burning/flame-lights.comp", "FireLights");
     check_list::<Group>("burning/flames-whole.comp", "Groups");
     check_list::<Particle>("burning/flames-whole.comp", "Particles");
     check_list::<Part>("burning/falling.comp", "Parts");

@@ -7,7 +7,9 @@
 //!     └─► (parts ─► falling, or puddle) ─► flames ─┐
 //!     ┌─────────────────────────────────┘
 //! each frame:
-//!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw ─► (draw-ground ─► draw-puddle) ─► draw-fire
+//!     └─► vertex-mapping ─► surface-removal ─► normals ─► (flame-lights) ─► draw ─► (draw-ground ─► draw-puddle)
+//!     ┌───────────────────────────────────────────────────────────────────────────────────────────┘
+//!     └─► draw-fire ─► (tone)
 //! ```
 //!
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the
@@ -18,6 +20,7 @@ mod axes;
 mod block_rotation;
 mod block_weights;
 mod buffers;
+mod choices;
 mod chunks;
 mod draw;
 mod draw_fire;
@@ -27,6 +30,7 @@ mod draw_wire;
 mod estimate;
 pub mod experiments;
 mod falling;
+mod flame_lights;
 mod flames;
 mod framing;
 mod heat_boundary;
@@ -48,7 +52,9 @@ pub mod setup;
 mod surface_removal;
 mod targets;
 mod texture;
+mod tone;
 mod vertex_mapping;
+mod warnings;
 
 use std::sync::Arc;
 
@@ -60,6 +66,7 @@ use self::draw_ground::{DrawGround, ash};
 use self::draw_puddle::DrawPuddle;
 use self::draw_wire::DrawWire;
 use self::falling::falling;
+use self::flame_lights::{FlameLights, fire_lights};
 use self::heat_boundary::heat_boundary;
 use self::internal_deformation::InternalDeformation;
 use self::loading::Loading;
@@ -70,23 +77,26 @@ use self::ping_pong::PingPong;
 use self::puddle::Puddle;
 use self::refinement::Refinement;
 use self::surface_removal::SurfaceRemoval;
+use self::tone::ToneMapping;
 use self::vertex_mapping::vertex_mapping;
 use crate::gpu::transfer::read_buffer;
-use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
+use crate::gpu::{Buffer, Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::chunks::{ChunkBuffers, Visits};
+pub use self::flame_lights::{FireLight, LIGHT_CELLS};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
-pub use self::parameters::{Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
+pub use self::parameters::{Heat, Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::parts::{MOST_PARTS, Part, Parts, SEARCH_TICKS};
 pub use self::puddle::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH};
 pub use self::texture::{Level, Texture, with_levels};
+pub use crate::papers::tone::Tone;
 
 /// Features that a device needs for this paper, beyond the baseline of the Vulkan layer.
-pub const NEEDS: [Feature; 0] = [];
+pub const NEEDS: [Feature; 1] = [Feature::BlendRgba16Float];
 
 /// Slices that one frame records at most, more than the longest time step has: those of frames that are left out before
 /// a late picture would not fit into memory at once.
@@ -112,11 +122,14 @@ pub struct Burning {
     vertex_mapping: PingPong<1>,
     surface_removal: SurfaceRemoval,
     normals: Normals,
+    fire_lights: Option<Arc<Buffer>>,
+    flame_lights: Option<FlameLights>,
     draw: Draw,
     draw_wire: Option<DrawWire>,
     draw_ground: Option<DrawGround>,
     draw_puddle: Option<DrawPuddle>,
     draw_fire: Option<DrawFire>,
+    tone: Option<ToneMapping>,
     /// Slices of ticks since the fire was lit.
     slices: u64,
     /// Slices before frame 0.
@@ -146,7 +159,11 @@ impl Burning {
         let refinement =
             is_refined.then(|| Refinement::new(shaders, label, parameters, &mut buffers, &model)).transpose()?;
         let appearances = Appearances::new(shaders, label, variant, parameters, &model)?;
-        let draw = Draw::new(shaders, label, (variant, parameters), &buffers, appearances.as_ref(), &model)?;
+        let has_light = parameters.has_linear_light();
+        let fire_lights = has_light.then(|| fire_lights(shaders, label)).transpose()?;
+        let lights = fire_lights.as_ref();
+        let seen = (appearances.as_ref(), lights);
+        let draw = Draw::new(shaders, label, (variant, parameters), &buffers, seen, &model)?;
         let has_wire = parameters.shading == Shading::Wire;
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let has_parts = parameters.collapses(variant);
@@ -155,12 +172,22 @@ impl Burning {
         let has_puddle = parameters.has_puddle(variant);
         let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers)).transpose()?;
         let draw_puddle =
-            puddle.as_ref().map(|puddle| DrawPuddle::new(shaders, label, &buffers, &draw, puddle)).transpose()?;
+            puddle.as_ref().map(|puddle| DrawPuddle::new(shaders, label, &buffers, (&draw, lights), puddle));
+        let draw_puddle = draw_puddle.transpose()?;
         let ash = parameters.has_ash(variant).then(|| ash(shaders, label, &mut buffers)).transpose()?;
         let seen_ash = ash.as_ref().filter(|_| parameters.has_ground());
-        let draw_ground = seen_ash.map(|ash| DrawGround::new(shaders, &buffers, &draw, ash)).transpose()?;
+        let draw_ground =
+            seen_ash.zip(lights).map(|seen| DrawGround::new(shaders, &buffers, &draw, seen)).transpose()?;
         let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, (&draw, parts.as_ref()))?;
-        let draw_fire = flames.as_ref().map(|flames| DrawFire::new(shaders, &buffers, &draw, flames)).transpose()?;
+        let draw_fire = flames
+            .as_ref()
+            .map(|flames| DrawFire::new(shaders, label, parameters, &buffers, (&draw, flames), lights))
+            .transpose()?;
+        let shining = flames.as_ref().zip(lights);
+        let flame_lights =
+            shining.map(|(flames, lights)| FlameLights::new(shaders, &buffers, flames, lights)).transpose()?;
+        let fire = flames.as_ref().zip(draw_fire.as_ref());
+        let tone = lights.map(|_| ToneMapping::new(shaders, parameters, &draw, fire)).transpose()?;
         let mut burning = Burning {
             device: device.clone(),
             variant,
@@ -191,11 +218,14 @@ impl Burning {
             puddle,
             refinement,
             normals: Normals::new(shaders, &buffers, appearances.as_ref(), &model)?,
+            fire_lights,
+            flame_lights,
             draw,
             draw_wire,
             draw_ground,
             draw_puddle,
             draw_fire,
+            tone,
             parameters: parameters.clone(),
             model,
             buffers,
@@ -325,13 +355,19 @@ impl Burning {
         self.flames.as_ref()
     }
 
-    /// Sets the camera of the next frames; false where another level of detail suits it, which is built in. The caller has
-    /// validated it.
+    /// [`FireLight`]s, of a picture of linear light.
+    pub fn fire_lights(&self) -> Option<&Arc<Buffer>> {
+        self.fire_lights.as_ref()
+    }
+
+    /// Sets the camera, the light of the flames, the exposure and the tone of the next frames; false where another level
+    /// of detail suits the camera, which is built in. The caller has validated them.
     ///
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn set_camera(&mut self, camera: Option<Camera>) -> Result<bool, Error> {
-        let parameters = Parameters { camera, ..self.parameters.clone() };
+    pub fn set_seen(&mut self, seen: &Parameters) -> Result<bool, Error> {
+        let Parameters { camera, fire_light, exposure, tone, .. } = *seen;
+        let parameters = Parameters { camera, fire_light, exposure, tone, ..self.parameters.clone() };
         let level = |of: &Parameters| refinement::drawn_level(of, &self.model, self.model.levels);
         if self.refinement.is_some() && level(&parameters) != level(&self.parameters) {
             return Ok(false);
@@ -340,6 +376,9 @@ impl Burning {
         self.draw.set_camera(&parameters, camera)?;
         if let Some(flames) = &self.flames {
             flames.set_camera(&parameters, &camera)?;
+        }
+        if let Some(tone) = &mut self.tone {
+            tone.set_tone(&parameters);
         }
         self.parameters = parameters;
         Ok(true)
@@ -400,6 +439,9 @@ impl Paper for Burning {
             self.normals.record(frame)?;
             self.is_shaded = true;
         }
+        if let Some(flame_lights) = &self.flame_lights {
+            flame_lights.record(frame)?;
+        }
         self.draw.record(frame)?;
         if let Some(draw_wire) = &self.draw_wire {
             draw_wire.record(frame)?;
@@ -412,6 +454,9 @@ impl Paper for Burning {
         }
         if let Some(draw_fire) = &self.draw_fire {
             draw_fire.record(frame)?;
+        }
+        if let Some(tone) = &self.tone {
+            tone.record(frame)?;
         }
         Ok(())
     }
@@ -433,28 +478,7 @@ impl Paper for Burning {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.model.degenerate > 0 {
-            let count = self.model.degenerate;
-            warnings.push(format!("{count} triangles of the mesh have two corners in one place and are left out"));
-        }
-        if self.variant == Variant::Solid && !self.model.is_closed {
-            warnings.push(
-                "the mesh is not closed: how deep a solid chars follows from the volume that it encloses; close it, or \
-                 burn it as `shell`"
-                    .to_owned(),
-            );
-        }
-        let nearest = self.model.rest.iter().map(|vertex| vertex.boundary_distance).fold(f32::INFINITY, f32::min);
-        let radius = self.parameters.speed_per_s * (self.ticks() as f64 / TICKS_PER_S) as f32;
-        if self.ticks() > 0 && nearest > radius {
-            warnings.push(format!(
-                "nothing burns: the heat boundary has a radius of {radius} after {} ticks, and the object begins at \
-                 {nearest}; move `source` nearer or burn longer",
-                self.ticks()
-            ));
-        }
-        warnings
+        warnings::warnings(self)
     }
 
     fn camera(&self) -> Option<Camera> {

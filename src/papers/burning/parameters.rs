@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+pub use super::choices::{Heat, Look, Material, Shading};
 use super::framing::seen_from;
 use super::level_of_detail::LevelOfDetail;
 use super::materials::Materials;
 use super::texture::Texture;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Value};
+use crate::measure::parameter::{self, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Value};
+use crate::papers::tone::Tone;
 use crate::scene::Camera;
 use crate::{field, size_field};
 
@@ -55,69 +57,6 @@ impl Variant {
     }
 }
 
-/// The material of the surface, to the eye.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Material {
-    /// The albedo alone.
-    Plain,
-    /// The albedo with the rings of a tree around a vertical axis.
-    Wood,
-    /// The albedo alone, which neither chars nor glows.
-    Wax,
-}
-
-impl Choice for Material {
-    const ALL: &'static [Material] = &[Material::Plain, Material::Wood, Material::Wax];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("plain", "The albedo alone"),
-        ("wood", "The albedo with the rings of a tree"),
-        ("wax", "The albedo alone, which neither chars nor glows"),
-    ];
-}
-
-/// Whose pictures are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Look {
-    /// Parts that nothing holds fall, wax gathers in a puddle, and the ground is drawn.
-    Natural,
-    /// The text's own, which its experiments measure.
-    Dissertation,
-}
-
-impl Choice for Look {
-    const ALL: &'static [Look] = &[Look::Natural, Look::Dissertation];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("natural", "Parts that nothing holds fall, wax gathers in a puddle, and the ground is drawn"),
-        ("dissertation", "The text alone, which its experiments measure: what burns is gone, and there is no ground"),
-    ];
-}
-
-/// The quantity that colours the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// Lit, charred and glowing: the finished picture.
-    Lit,
-    /// The areas of the heat boundary (figures 3.3, 4.3, 5.3, 5.4).
-    Areas,
-    /// The blocks (figure 3.5).
-    Blocks,
-    /// Normals as colours.
-    Normals,
-    /// Lit, with the edges of the drawn triangles (figures 4.2, 4.4).
-    Wire,
-}
-
-impl Choice for Shading {
-    const ALL: &'static [Shading] = &[Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("lit", "Lit, charred and glowing: the finished picture"),
-        ("areas", "The areas of the heat boundary"),
-        ("blocks", "The blocks"),
-        ("normals", "Normals as colours"),
-        ("wire", "Lit, with the edges of the drawn triangles"),
-    ];
-}
-
 /// Ticks of the simulation in a second.
 pub const TICKS_PER_S: f64 = 60.0;
 
@@ -134,6 +73,12 @@ pub struct Parameters {
     pub sources: Vec<Vec3>,
     /// psi of the boundary: the heat index of 3.3.
     pub psi: f32,
+    /// The way that heat takes from its sources; without, that of the look.
+    pub heat: Option<Heat>,
+    /// Heat along the surface comes so many times farther the way that flames lean, beside the one: upwards without wind.
+    pub climb: f32,
+    /// Wind, which carries flames and smoke, and with the flames the heat along the surface; diagonals a second.
+    pub wind: Vec3,
     /// Growth of the boundary's radius a second.
     pub speed_per_s: f32,
     /// w, width of an area of the boundary.
@@ -188,6 +133,14 @@ pub struct Parameters {
     pub smoke: u32,
     /// Radius of a particle.
     pub particle_radius: f32,
+    /// Factor of the light that the flames give, of the natural look.
+    pub fire_light: f32,
+    /// Pixels of the picture along a side of a pixel of the layer that holds fire and smoke, of the natural look.
+    pub fire_scale: u32,
+    /// Factor of the picture's light, of the natural look.
+    pub exposure: f32,
+    /// Fate of light that is brighter than the display, of the natural look.
+    pub tone: Tone,
     /// Finest level that is drawn; without, by the distance of the camera (4.5).
     pub level_of_detail: Option<u32>,
     /// The surface's pattern, and what fire does to it; without, wood, and wax where it melts.
@@ -223,6 +176,9 @@ impl Default for Parameters {
             edge: 0.1,
             sources: Vec::new(),
             psi: 1.0,
+            heat: None,
+            climb: 1.0,
+            wind: Vec3::ZERO,
             speed_per_s: 0.05,
             width_of_areas: 0.04,
             flammability: 60,
@@ -250,6 +206,10 @@ impl Default for Parameters {
             fire: 3000,
             smoke: 1800,
             particle_radius: 0.02,
+            fire_light: 1.0,
+            fire_scale: 2,
+            exposure: 1.0,
+            tone: Tone::Shoulder,
             level_of_detail: None,
             material: None,
             texture: None,
@@ -285,6 +245,11 @@ const LENGTH: Range = Range::above(0.0).to(1.0);
 const LEVELS: Range = Range::from(0.0).to(5.0);
 const PARTICLES: Range = Range::from(0.0).to(1e6);
 
+const FACTOR: Range = Range::from(0.0).to(1e3);
+
+const FIRE_SCALE: &str = "Draw fire and smoke in pixels of so many along a side, of the natural look";
+const CLIMB: &str = "Heat along the surface comes this many times farther where flames lean, beside the one";
+const WIND: &str = "Wind, which flames and smoke drift with, and which leans the climbing heat";
 const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";
 const PRELOAD: &str = "Load what never changes before the first frame, or again in every frame";
 const KEEP_CONNECTED: &str =
@@ -329,6 +294,10 @@ impl Parameters {
             .default_text("the lowest vertex, melting the highest")
             .everyday(),
             row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3"),
+            row("heat", p!(heat), any, "Way that heat takes from its sources", "3.3")
+                .default_text("surface, with the dissertation's look air"),
+            row("climb", p!(climb), R::from(0.0).to(100.0), CLIMB, ""),
+            row("wind", p!(wind), R::from(-10.0).to(10.0), WIND, "").unit("diagonals a second").placeholder("X,Y,Z"),
             row("speed", p!(speed_per_s), R::above(0.0).to(10.0), "Growth of the boundary's radius", "3.3")
                 .unit("diagonals a second")
                 .everyday(),
@@ -378,6 +347,14 @@ impl Parameters {
             row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6").unit("particles").everyday(),
             row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6").unit("particles").everyday(),
             row("particle-radius", p!(particle_radius), LENGTH, "Radius of a particle", "").unit("diagonals"),
+            row("fire-light", p!(fire_light), FACTOR, "Factor of the light of the flames, of the natural look", "")
+                .cost(Cost::Constants),
+            row("fire-scale", p!(fire_scale), R::from(1.0).to(8.0), FIRE_SCALE, "").unit("pixels"),
+            row("exposure", p!(exposure), FACTOR, "Factor of the picture's light, of the natural look", "")
+                .cost(Cost::Constants)
+                .everyday(),
+            row("tone", p!(tone), any, "Fate of what is brighter than the display, of the natural look", "")
+                .cost(Cost::Constants),
             row(
                 "lod",
                 LEVEL_OF_DETAIL,

@@ -180,11 +180,11 @@ impl Study for Setup {
     }
 
     fn reconfigure(&self, _: &Scene, paper: &mut Burning, changed: &Given) -> Result<bool, Error> {
-        if !changed.is_within(&["camera"]) {
+        if !changed.is_within(&["camera", "fire-light", "exposure", "tone"]) {
             return Ok(false);
         }
         self.check()?;
-        Ok(paper.set_camera(self.parameters.camera)?)
+        Ok(paper.set_seen(&self.parameters)?)
     }
 
     fn make(
@@ -245,6 +245,7 @@ impl Study for Setup {
             ("source", json!(sources)),
             ("floor", json!(model.floor)),
             ("material", json!(parameters.material(variant).map(Material::name))),
+            ("heat", json!(parameters.heat().name())),
             ("albedo", json!(parameters.albedo(variant).to_array())),
             ("substances", substances(variant, parameters, model)),
             ("materials_sha256", json!(parameters.materials.as_ref().map(|materials| &materials.sha256))),

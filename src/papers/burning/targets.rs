@@ -38,6 +38,17 @@ pub fn targets(paper: &Burning) -> Vec<Target> {
             .between(paper.draw.camera.near_m, paper.draw.camera.far_m),
         Target::image("picture", &paper.draw.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
     ];
+    if let Some(fire_lights) = &paper.fire_lights {
+        targets.push(Target::image("radiance", &paper.draw.target).of("linear light before fire and smoke, alpha"));
+        targets.push(
+            Target::table("fire-lights", fire_lights, 8).of(
+                "a light of the flames: x, y, z, radius in diagonals, linear red, green, blue, count of the lights",
+            ),
+        );
+        if let Some(draw_fire) = &paper.draw_fire {
+            targets.push(Target::image("fire-layer", &draw_fire.target).of("linear light of fire and smoke, alpha"));
+        }
+    }
     if let Some(refinement) = &paper.refinement {
         targets.push(
             Target::integers("statuses", &refinement.statuses, 1)

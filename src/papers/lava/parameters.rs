@@ -9,6 +9,7 @@ use super::sph;
 use super::sph::parameters::{Flow, Simulation};
 use crate::measure::ParameterError;
 use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Value as _};
+pub use crate::papers::tone::Tone;
 use crate::scene::Camera;
 use crate::{field, size_field};
 
@@ -104,33 +105,6 @@ impl Choice for SurfaceDraw {
         ("splats", "The thesis's: splats, blended"),
         ("march", "A ray for each pixel against the height field, without stair-steps and saw-teeth"),
     ];
-}
-
-/// Fate of what is brighter than the display.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Tone {
-    /// Bent above 0.6, so that nothing reaches the display's end.
-    Shoulder,
-    /// Clipped at the display's end.
-    Clip,
-}
-
-impl Choice for Tone {
-    const ALL: &'static [Self] = &[Tone::Shoulder, Tone::Clip];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("shoulder", "As it is up to 0.6 of the display's range, above it ever less, so that nothing clips"),
-        ("clip", "Clipped, as by a frame buffer"),
-    ];
-}
-
-impl Tone {
-    /// The value from which `lava/tone.glsl` bends, as a fraction of the display's range.
-    pub(super) fn knee(self) -> f32 {
-        match self {
-            Tone::Shoulder => 0.6,
-            Tone::Clip => 1.0,
-        }
-    }
 }
 
 /// Every number of a configuration, in the ranges of [`Parameters::declared`].

@@ -6,7 +6,7 @@ use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::flames::{Fate, Group, Particle, Pools};
 use fumarole::papers::burning::{Group as DeviceGroup, Parameters, Particle as DeviceParticle, Variant};
 use fumarole::scene::{Mesh, shapes};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::dump;
 use super::fire::{Fire, ball, quick};
@@ -44,6 +44,7 @@ fn every_particle_is_where_the_oracle_has_it() {
         smoke: 200,
         speed_per_s: 0.2,
         width_of_areas: 0.1,
+        wind: Vec3::new(0.3, -0.05, -0.2),
         level_of_detail: Some(5),
         ..quick()
     };
@@ -76,6 +77,7 @@ fn compare(parameters: &Parameters, mesh: &Mesh, first: u32, count: u32) -> [u32
             sizes: [parameters.fire, parameters.smoke],
             radius: parameters.particle_radius.into(),
             seed: parameters.noise_seed(),
+            wind: parameters.wind.as_dvec3(),
         };
         let mut fire = Fire::new(device, Variant::Shell, parameters, mesh);
         let twin = Twin::new(&fire, Variant::Shell, parameters, mesh);

@@ -6,6 +6,7 @@ mod fire;
 mod flames;
 mod flames_oracle;
 mod laws;
+mod lights;
 mod materials;
 mod melting;
 mod meshes;

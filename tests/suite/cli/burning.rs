@@ -57,6 +57,9 @@ fn the_passes_follow_the_chapters() {
             passes.insert(fire + 1, "draw-puddle");
             passes.insert(flames, "puddle");
         }
+        let draw = passes.iter().position(|pass| *pass == "draw").unwrap();
+        passes.insert(draw, "flame-lights");
+        passes.push("tone");
         if ["shell", "low-poly", "fully-subdivided"].contains(&variant) {
             passes.splice(flames..flames, ["parts", "falling"]);
         }
@@ -70,7 +73,7 @@ fn the_passes_follow_the_chapters() {
     assert_eq!(loading[0]["passes"][0]["kind"], "transfer");
     let unlit = burning("passes --json --variant shell --fire 0 --smoke 0 --size 48x32").on_test_device();
     let unlit = unlit.run().succeeded().json();
-    assert!(!names(&unlit[0]["passes"]).iter().any(|name| ["flames", "draw-fire"].contains(name)));
+    assert!(!names(&unlit[0]["passes"]).iter().any(|name| ["flames", "flame-lights", "draw-fire"].contains(name)));
 }
 
 #[test]

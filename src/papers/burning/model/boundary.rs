@@ -16,13 +16,17 @@ const DELTA: f64 = 0.25;
 /// Wavelength of Theta, a fraction of the diagonal.
 const WAVELENGTH: f64 = 1.0 / 8.0;
 
-/// R of a point of the object at rest, diagonals.
-pub fn distance(rest: Vec3, sources: &[Vec3], psi: f32, seed: u32) -> f64 {
-    let rest = rest.as_dvec3();
-    let angle = 2.0 * noise(rest / WAVELENGTH, seed);
+/// R of a point of the object at rest by the squared length of the fire's way to it, diagonals.
+pub fn distance(rest: Vec3, squared_way: f64, psi: f32, seed: u32) -> f64 {
+    let angle = 2.0 * noise(rest.as_dvec3() / WAVELENGTH, seed);
     let ripple = 0.5 * ((PI * angle / DELTA).sin() + (PI * angle).sin());
-    let nearest = sources.iter().map(|s| (rest - s.as_dvec3()).length_squared()).fold(f64::INFINITY, f64::min);
-    (f64::from(psi) * nearest * (1.0 + IRREGULARITY * ripple)).sqrt()
+    (f64::from(psi) * squared_way * (1.0 + IRREGULARITY * ripple)).sqrt()
+}
+
+/// Squared length of the straight way from the nearest source, as in the text.
+pub fn straight(rest: Vec3, sources: &[Vec3]) -> f64 {
+    let rest = rest.as_dvec3();
+    sources.iter().map(|s| (rest - s.as_dvec3()).length_squared()).fold(f64::INFINITY, f64::min)
 }
 
 /// Smooth noise in [0, 1): random values at whole positions, blended by quintics.

@@ -7,6 +7,7 @@ mod count;
 mod division;
 mod incidence;
 mod lattice;
+mod surface_heat;
 mod touching;
 pub mod tree;
 mod weld;
@@ -15,7 +16,7 @@ use glam::Vec3;
 
 use super::buffers::RestVertex;
 use super::materials::{conduct, stronger};
-use super::parameters::{Parameters, Variant};
+use super::parameters::{Heat, Parameters, Variant};
 use crate::gpu::Error;
 use crate::scene::{Bounds, Mesh};
 
@@ -126,8 +127,19 @@ impl Model {
             given => given.to_vec(),
         };
         let seed = parameters.noise_seed();
-        let distance = |&position: &Vec3| boundary::distance(position, &sources, parameters.psi, seed) as f32;
-        let mut distances: Vec<f32> = positions.iter().map(distance).collect();
+        let mean_edge = mean_edge(positions, &triangles);
+        let touching = touching::touching(positions, &triangles, mean_edge);
+        let squared_ways: Vec<f64> = match parameters.heat() {
+            Heat::Air => positions.iter().map(|&position| boundary::straight(position, &sources)).collect(),
+            Heat::Surface => {
+                let lean = surface_heat::lean(parameters.climb, parameters.wind);
+                let ways = surface_heat::ways((positions, &triangles), &touching, &sources, lean);
+                ways.into_iter().map(|way| way * way).collect()
+            }
+        };
+        let reached = positions.iter().zip(squared_ways);
+        let mut distances: Vec<f32> =
+            reached.map(|(&p, squared)| boundary::distance(p, squared, parameters.psi, seed) as f32).collect();
         let mut substances = Vec::new();
         if let Some(materials) = materials {
             let all = materials.all(variant, parameters);
@@ -138,9 +150,8 @@ impl Model {
         let rest = rest.map(|(&position, boundary_distance)| RestVertex { position, boundary_distance }).collect();
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
-        let mean_edge = mean_edge(positions, &triangles);
         Ok(Model {
-            touching: touching::touching(positions, &triangles, mean_edge),
+            touching,
             levels,
             rest,
             substances,

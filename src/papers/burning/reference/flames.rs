@@ -41,6 +41,8 @@ pub struct Pools {
     pub radius: f64,
     /// Seed of the births.
     pub seed: u32,
+    /// Diagonals a second.
+    pub wind: DVec3,
 }
 
 /// The particles and vertices of a block.
@@ -190,7 +192,8 @@ impl Tick<'_> {
                 None => (*particle, Fate::Absent),
             };
         }
-        let position = particle.position + self.speed(state.tick, particle, [FIRE, SMOKE][pool]) / RATE;
+        let speed = self.speed(state.tick, particle, [FIRE, SMOKE][pool]) + pools.wind;
+        let position = particle.position + speed / RATE;
         let moved = Particle { position, age: particle.age + 1, ..*particle };
         // Smoke is in the air already; fire needs what burns.
         if pool == 0 && state.blocks[particle.block].ready == 0 {
@@ -244,7 +247,7 @@ mod tests {
     use super::super::{Block, Variant};
     use super::*;
 
-    const POOLS: Pools = Pools { sizes: [100, 50], radius: 0.02, seed: 1 };
+    const POOLS: Pools = Pools { sizes: [100, 50], radius: 0.02, seed: 1, wind: DVec3::ZERO };
 
     #[test]
     fn particles_are_divided_by_weight_and_none_is_lost() {

@@ -13,6 +13,7 @@ mod fixtures;
 pub mod flames;
 #[cfg(test)]
 mod laws;
+pub mod lights;
 pub mod melting;
 mod model;
 mod normals;

@@ -1,0 +1,203 @@
+//! Heat that climbs along the surface: the way of the fire from its sources, in position of 3.3's straight line. Ours.
+//!
+//! A way over the triangles counts by its length, of which a part that rises counts less: flames reach farther up than
+//! to the sides, and lean with the wind. Through the air heat comes too, but a third as far, so that fire leaps to a separate part or over a
+//! gap only where the surface leads far around.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+
+use glam::{DVec3, Vec3};
+
+use super::Incidence;
+
+/// Length of a way through the air, over that of one on the surface which takes the heat as long.
+pub const THROUGH_AIR: f64 = 3.0;
+
+/// Part of a way's distance below which a shorter one is none: rounding ends no search.
+const CLOSER: f64 = 1.0 - 1e-9;
+
+/// Speed at which flames rise (`burning/flames.comp`), diagonals a second.
+const RISE_PER_S: f64 = 0.17;
+
+/// The lean of flames in a wind, diagonals a second: straight up without any, `climb` long where they rise as ever.
+pub fn lean(climb: f32, wind: Vec3) -> DVec3 {
+    f64::from(climb) * (DVec3::Y + wind.as_dvec3() / RISE_PER_S)
+}
+
+/// Length of the fire's way to each vertex, diagonals; what comes along `lean` counts 1 / (1 + its length) of its own.
+///
+/// Heat passes between the vertices of each pair of `touching`, of separate parts, too.
+pub fn ways(
+    (positions, triangles): (&[Vec3], &[[u32; 3]]),
+    touching: &[[u32; 2]],
+    sources: &[Vec3],
+    lean: DVec3,
+) -> Vec<f64> {
+    let place = |vertex: usize| positions[vertex].as_dvec3();
+    let straight = |vertex: usize, source: &Vec3| length(source.as_dvec3(), place(vertex), lean);
+    let vertices = 0..positions.len();
+    let by_air = |vertex: usize| {
+        sources.iter().map(|source| THROUGH_AIR * straight(vertex, source)).fold(f64::INFINITY, f64::min)
+    };
+    let mut ways: Vec<f64> = vertices.clone().map(by_air).collect();
+    // The fire is lit where the surface is nearest to a source.
+    for source in sources {
+        if let Some(nearest) = vertices.clone().min_by(|a, b| straight(*a, source).total_cmp(&straight(*b, source))) {
+            ways[nearest] = ways[nearest].min(straight(nearest, source));
+        }
+    }
+    let incidence = Incidence::new(positions.len(), triangles);
+    let mut beside: HashMap<usize, Vec<usize>> = HashMap::new();
+    for [a, b] in touching.iter().map(|pair| pair.map(|vertex| vertex as usize)) {
+        beside.entry(a).or_default().push(b);
+        beside.entry(b).or_default().push(a);
+    }
+    // Ways are not negative, so that their bits are in their order.
+    let mut open: BinaryHeap<Reverse<(u64, usize)>> =
+        vertices.map(|vertex| Reverse((ways[vertex].to_bits(), vertex))).collect();
+    while let Some(Reverse((bits, vertex))) = open.pop() {
+        if f64::from_bits(bits) > ways[vertex] {
+            continue;
+        }
+        let mut reached: Vec<(usize, f64)> = Vec::new();
+        for &to in beside.get(&vertex).into_iter().flatten() {
+            reached.push((to, ways[vertex] + length(place(vertex), place(to), lean)));
+        }
+        for entry in incidence.of(vertex as u32) {
+            let corners = triangles[(entry / 4) as usize].map(|corner| corner as usize);
+            let corner = (entry % 4) as usize;
+            let [first, second] = [corners[(corner + 1) % 3], corners[(corner + 2) % 3]];
+            for (to, other) in [(first, second), (second, first)] {
+                let ends = [vertex, other];
+                reached.push((to, across(ends.map(place), ends.map(|end| ways[end]), place(to), lean)));
+            }
+        }
+        for (to, way) in reached {
+            if way < CLOSER * ways[to] {
+                ways[to] = way;
+                open.push(Reverse((way.to_bits(), to)));
+            }
+        }
+    }
+    ways
+}
+
+/// Of a straight way, as heat takes it.
+fn length(from: DVec3, to: DVec3, lean: DVec3) -> f64 {
+    let way = to - from;
+    let length = way.length();
+    if length == 0.0 { 0.0 } else { length / (1.0 + lean.dot(way).max(0.0) / length) }
+}
+
+/// Of the way to a corner of a triangle over the opposite edge, along which ways are linear: the least of those through
+/// some of its places, and through the one that a plane front would come from.
+fn across(ends: [DVec3; 2], ways: [f64; 2], to: DVec3, lean: DVec3) -> f64 {
+    let edge = ends[1] - ends[0];
+    let edge_length = edge.length();
+    let by = |share: f64| ways[0] + share * (ways[1] - ways[0]) + length(ends[0] + share * edge, to, lean);
+    // By quarters too: where ways that rise are shorter, no formula has the least.
+    let least = [0.0, 0.25, 0.5, 0.75].map(by).into_iter().fold(f64::INFINITY, f64::min);
+    let slope = (ways[1] - ways[0]) / edge_length;
+    if !slope.is_finite() || slope.abs() >= 1.0 {
+        return least;
+    }
+    let along = (to - ends[0]).dot(edge) / edge_length;
+    let height = ((to - ends[0]).length_squared() - along * along).max(0.0).sqrt();
+    let share = (along - height * slope / (1.0 - slope * slope).sqrt()) / edge_length;
+    if (0.0..=1.0).contains(&share) { least.min(by(share)) } else { least }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::burning::model::with_triangles;
+    use crate::scene::{Mesh, shapes};
+
+    /// A square of `side` x `side` places in the plane of x and y, 1 wide.
+    fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let at = |i: u32| i as f32 / (side - 1) as f32;
+        let positions = (0..side * side).map(|i| Vec3::new(at(i % side), at(i / side), 0.0)).collect();
+        let squares = (0..(side - 1) * (side - 1)).map(|i| i / (side - 1) * side + i % (side - 1));
+        let triangles = squares.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]).collect();
+        (positions, triangles)
+    }
+
+    #[test]
+    fn on_a_sheet_the_way_is_straight() {
+        let (positions, triangles) = sheet(41);
+        let source = Vec3::new(0.5, 0.5, 0.0);
+        let ways = ways((&positions, &triangles), &[], &[source], DVec3::ZERO);
+        for (way, place) in ways.iter().zip(&positions) {
+            let straight = f64::from(place.distance(source));
+            assert!(*way > 0.999 * straight && *way < straight + 1.1 / 40.0, "{place}: {way}, {straight}");
+        }
+    }
+
+    #[test]
+    fn it_climbs() {
+        let (positions, triangles) = sheet(41);
+        let ways = ways((&positions, &triangles), &[], &[Vec3::new(0.5, 0.5, 0.0)], lean(1.0, Vec3::ZERO));
+        let at = |x: usize, y: usize| ways[41 * y + x];
+        let [up, down, slanting] = [at(20, 40), at(20, 0), at(40, 40)];
+        assert!((up - 0.25).abs() < 1e-6 && (down - 0.5).abs() < 1e-6, "{up} {down}");
+        let straight = 0.5_f64.sqrt() / (1.0 + 0.5_f64.sqrt());
+        assert!(slanting > 0.999 * straight && slanting < straight + 1.5 / 40.0, "{slanting} {straight}");
+    }
+
+    #[test]
+    fn the_wind_leans_it() {
+        let (positions, triangles) = sheet(41);
+        let source = Vec3::new(0.5, 0.5, 0.0);
+        let ways = ways((&positions, &triangles), &[], &[source], lean(1.0, Vec3::new(0.34, -0.17, 0.0)));
+        let at = |x: usize, y: usize| ways[41 * y + x];
+        // The flames lie twice as long as they were, to the right.
+        let [right, left, up] = [at(40, 20), at(0, 20), at(20, 40)];
+        assert!((right - 0.5 / 3.0).abs() < 1e-6 && (left - 0.5).abs() < 1e-6, "{right} {left}");
+        assert!(up < 0.5 && up > 0.3, "{up}: aside and back");
+    }
+
+    #[test]
+    fn around_a_ball_it_is_an_arc() {
+        let Mesh { positions, indices, .. } = with_triangles(&shapes::sphere(48, 48), 8000);
+        let welded = super::super::Welded::new(&Mesh { positions, indices, ..Mesh::default() });
+        let triangles: Vec<[u32; 3]> =
+            welded.triangles.iter().map(|t| t.map(|corner| welded.welds[corner as usize])).collect();
+        let mut positions = vec![Vec3::ZERO; welded.vertex_count as usize];
+        for (corner, &vertex) in welded.welds.iter().enumerate() {
+            positions[vertex as usize] = welded.positions[corner];
+        }
+        let radius = f64::from(positions[0].distance(positions.iter().sum::<Vec3>() / positions.len() as f32));
+        let middle = positions.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / positions.len() as f64;
+        let source = positions[0];
+        let to = |p: Vec3| (p.as_dvec3() - middle).normalize();
+        let ways = ways((&positions, &triangles), &[], &[source], DVec3::ZERO);
+        for (way, place) in ways.iter().zip(&positions) {
+            let arc = radius * to(*place).angle_between(to(source));
+            assert!((way - arc).abs() < 0.03 * arc + 0.02 * radius, "{place}: {way}, {arc}");
+        }
+    }
+
+    #[test]
+    fn it_leaps_over_gaps_that_the_surface_leads_far_around() {
+        // Two sheets that do not touch, 0.1 apart.
+        let (near, triangles) = sheet(21);
+        let count = near.len() as u32;
+        let positions: Vec<Vec3> = near.iter().copied().chain(near.iter().map(|p| *p + 0.1 * Vec3::Z)).collect();
+        let other = triangles.iter().map(|t| t.map(|vertex| vertex + count));
+        let triangles: Vec<[u32; 3]> = triangles.iter().copied().chain(other).collect();
+        let touching = ways((&positions, &triangles), &[[20, count + 20]], &[Vec3::ZERO], DVec3::ZERO);
+        assert!(
+            (touching[count as usize + 20] - 1.1).abs() < 1e-6,
+            "from part to part: {}",
+            touching[count as usize + 20]
+        );
+        let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
+        assert!((ways[count as usize] - 0.3).abs() < 1e-6, "through the air: {}", ways[count as usize]);
+        assert!((ways[count as usize + 20] - 1.3).abs() < 1e-6, "and on along the surface");
+        for (way, place) in ways.iter().zip(&positions) {
+            let straight = f64::from(place.length());
+            assert!(*way >= 0.999 * straight && *way <= THROUGH_AIR * straight + 1e-6, "{place}: {way}");
+        }
+    }
+}

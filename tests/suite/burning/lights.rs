@@ -1,0 +1,181 @@
+//! The light of the flames: as bright as what the picture shows of them, on the ground, and in the display's tone.
+
+use std::sync::Arc;
+
+use fumarole::gpu::Device;
+use fumarole::gpu::bindings::Resource;
+use fumarole::gpu::transfer::read_image;
+use fumarole::image::{Rgba8, compare, srgb};
+use fumarole::measure::Paper;
+use fumarole::papers::burning::reference::flames::Particle;
+use fumarole::papers::burning::reference::lights::{Light, irradiance, lights};
+use fumarole::papers::burning::{FireLight, Parameters, Particle as DeviceParticle, Tone, Variant};
+use fumarole::papers::lava::reference::toned;
+use fumarole::scene::Mesh;
+use glam::{DVec3, DVec4};
+use half::f16;
+
+use super::fire::{Fire, ball};
+use crate::common::gpu_test;
+
+/// A fire of few flames, well alight.
+fn burning() -> Parameters {
+    Parameters {
+        width: 96,
+        height: 72,
+        speed_per_s: 0.3,
+        flammability: 40,
+        blocks: [4, 4, 4],
+        fire: 600,
+        smoke: 200,
+        first_frame: 100,
+        ..Parameters::default()
+    }
+}
+
+fn first_picture(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Fire {
+    let mut fire = Fire::new(device, variant, parameters, mesh);
+    fire.frame(0);
+    fire
+}
+
+fn image(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<DVec4> {
+    let targets = fire.paper.targets();
+    let target = targets.iter().find(|target| target.name == name).expect("the target");
+    let Resource::Image(view) = &target.resource else { panic!("{name} is no image") };
+    let halves: Vec<f16> = bytemuck::pod_collect_to_vec(&read_image(device, view).unwrap());
+    let texel = |t: &[f16]| DVec4::new(t[0].into(), t[1].into(), t[2].into(), t[3].into());
+    halves.chunks_exact(4).map(texel).collect()
+}
+
+fn on_device(fire: &Fire) -> Vec<FireLight> {
+    let lights: Vec<FireLight> = fire.read(fire.paper.fire_lights().unwrap());
+    lights[..lights[0].count as usize].to_vec()
+}
+
+#[test]
+fn the_flames_light_as_brightly_as_they_show() {
+    gpu_test(|device| {
+        let parameters = Parameters { fire_light: 2.0, ..burning() };
+        for variant in [Variant::Shell, Variant::Melting] {
+            let fire = first_picture(device, variant, &parameters, &ball());
+            let particles: Vec<DeviceParticle> = fire.read(&fire.paper.flames().unwrap().particles);
+            let of_device = |p: &DeviceParticle| Particle {
+                position: p.position.as_dvec3(),
+                age: p.age_ticks as u32,
+                life: p.life_ticks as u32,
+                block: p.block as usize,
+                own: p.random.map(f64::from),
+            };
+            let flames: Vec<Particle> = particles[..parameters.fire as usize].iter().map(of_device).collect();
+            let ours = lights(&flames, parameters.particle_radius.into(), parameters.fire_light.into());
+            let theirs = on_device(&fire);
+            assert!(ours.len() > 8 && ours.len() == theirs.len(), "{} lights, not {}", theirs.len(), ours.len());
+            for (ours, theirs) in ours.iter().zip(&theirs) {
+                let at = format!("{ours:?}: {:?} {:?}", theirs.position, theirs.intensity);
+                assert!(ours.place.distance(theirs.position.as_dvec3()) < 1e-4, "{at}");
+                assert!((ours.radius - f64::from(theirs.radius)).abs() < 1e-4, "{at}");
+                let whole = ours.intensity.x;
+                let apart = (ours.intensity - theirs.intensity.as_dvec3()).abs();
+                assert!(whole > 0.0 && apart.max_element() < 0.03 * whole, "{at}");
+            }
+        }
+        let unlit = first_picture(device, Variant::Shell, &Parameters { fire: 0, ..burning() }, &ball());
+        assert!(on_device(&unlit).is_empty(), "there is smoke alone");
+    });
+}
+
+#[test]
+fn the_ground_has_the_light_of_the_flames() {
+    gpu_test(|device| {
+        let parameters = Parameters { fire_light: 20.0, ..burning() };
+        let lit = first_picture(device, Variant::Shell, &parameters, &ball());
+        let unlit = first_picture(device, Variant::Shell, &Parameters { fire_light: 0.0, ..burning() }, &ball());
+        let [with, without] = [&lit, &unlit].map(|fire| image(device, fire, "radiance"));
+        let of_device = |light: &FireLight| Light {
+            place: light.position.as_dvec3(),
+            radius: light.radius.into(),
+            intensity: light.intensity.as_dvec3(),
+        };
+        let lights: Vec<Light> = on_device(&lit).iter().map(of_device).collect();
+        // The sun on the ground: ambient light and its own by the angle.
+        let sun = 0.35 + 0.65 * DVec3::new(0.45, 0.75, 0.6).normalize().y;
+        let camera = *Paper::camera(&lit.paper).as_ref().unwrap();
+        let to_clip = (camera.projection(parameters.aspect()) * camera.view()).as_dmat4();
+        let (width, height) = (parameters.width, parameters.height);
+        let floor = f64::from(lit.paper.model().floor);
+        let (mut seen, mut brightest) = (0, 0.0_f64);
+        for (i, (with, without)) in (0..).zip(with.iter().zip(&without)) {
+            let clip = |x: f64, pixels: u32| 2.0 * (x + 0.5) / f64::from(pixels) - 1.0;
+            let at = [clip((i % width).into(), width), clip((i / width).into(), height)];
+            let [near, far] = [0.1, 0.9].map(|depth| to_clip.inverse().project_point3(DVec3::new(at[0], at[1], depth)));
+            let way = (floor - near.y) / (far.y - near.y);
+            let place = near + way * (far - near);
+            // On the ground before it fades, beside the object and not over its edge.
+            let from_middle = DVec3::new(place.x, 0.0, place.z).length();
+            if !(0.0..1e3).contains(&way) || !(0.35..0.48).contains(&from_middle) || without.x > 0.2 {
+                continue;
+            }
+            let found = (with.truncate() / without.truncate() - 1.0) * sun;
+            let expected = irradiance(&lights, place, DVec3::Y);
+            let is_ground = (without.x / without.y - 0.15 / 0.14).abs() < 0.02;
+            if is_ground {
+                seen += 1;
+                brightest = brightest.max(expected.x);
+                let apart = (found - expected).abs().max_element();
+                assert!(apart < 0.004 + 0.01 * expected.x, "{i}: {found} {expected}");
+            }
+        }
+        assert!(seen > 100 && brightest > 0.1, "{seen} pixels of ground, {brightest}");
+    });
+}
+
+#[test]
+fn the_picture_is_the_exposed_light_with_the_layer_over_it() {
+    gpu_test(|device| {
+        for (exposure, tone) in [(1.0, Tone::Shoulder), (2.5, Tone::Shoulder), (2.5, Tone::Clip), (0.0, Tone::Clip)] {
+            let parameters = Parameters { exposure, tone, fire_scale: 1, fire_light: 4.0, ..burning() };
+            let fire = first_picture(device, Variant::Shell, &parameters, &ball());
+            let (light, layer) = (image(device, &fire, "radiance"), image(device, &fire, "fire-layer"));
+            assert!(layer.iter().filter(|texel| texel.x > 0.05).count() > 50);
+            let picture = read_image(device, fire.paper.picture()).unwrap();
+            for (i, (light, layer)) in light.iter().zip(&layer).enumerate() {
+                let whole = light.truncate() * (1.0 - layer.w) + layer.truncate();
+                for channel in 0..3 {
+                    let value = toned(whole[channel] * f64::from(exposure), tone == Tone::Shoulder);
+                    let wanted = 255.0 * srgb::encode(value);
+                    let found = f64::from(picture[4 * i + channel]);
+                    assert!((found - wanted).abs() < 1.0, "{i}, {channel}: {found} {wanted}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn a_layer_of_fewer_pixels_is_close_to_that_of_all() {
+    gpu_test(|device| {
+        for (variant, frame) in [(Variant::Shell, 100), (Variant::Shell, 160), (Variant::Melting, 100)] {
+            let pictured = |fire_scale: u32| {
+                let (width, height) = (401, 299);
+                let parameters = Parameters { width, height, fire_scale, first_frame: frame, ..burning() };
+                let fire = first_picture(device, variant, &parameters, &ball());
+                Rgba8::new(width, height, read_image(device, fire.paper.picture()).unwrap()).unwrap()
+            };
+            let whole = pictured(1);
+            let [half, eighth] = [2, 8].map(|scale| compare(&whole, &pictured(scale), None).unwrap());
+            assert!(half.mean > 0.0 && half.mean < 0.3 && half.p99 < 6.0, "{half:?}");
+            assert!(eighth.mean > half.mean && eighth.mean < 2.0, "{eighth:?}");
+        }
+    });
+}
+
+#[test]
+fn the_text_alone_has_no_lights() {
+    gpu_test(|device| {
+        let fire = first_picture(device, Variant::Shell, &super::fire::quick(), &ball());
+        assert!(fire.paper.fire_lights().is_none());
+        let names: Vec<String> = fire.paper.targets().into_iter().map(|target| target.name).collect();
+        assert!(!names.iter().any(|name| ["radiance", "fire-layer", "fire-lights"].contains(&name.as_str())));
+    });
+}
