@@ -17,6 +17,7 @@
 
 mod appearance;
 mod axes;
+mod beside;
 mod block_rotation;
 mod block_weights;
 mod buffers;
@@ -84,6 +85,7 @@ use crate::gpu::{Buffer, Device, Error, Feature, Frame, ImageView, Mode, Recorde
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
+pub use self::beside::Beside;
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::chunks::{ChunkBuffers, Visits};
 pub use self::flame_lights::{FireLight, LIGHT_CELLS};

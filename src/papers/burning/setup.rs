@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::axes;
+use super::beside::{Beside, together};
 use super::experiments::{self, Options, presets};
 use super::materials::{self, Materials};
 use super::model::{Model, with_triangles};
@@ -26,7 +27,7 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _, ParameterError};
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{Mesh, MeshOptions, MeshSource};
+use crate::scene::{Mesh, MeshOptions, MeshSource, promised_triangles};
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -35,6 +36,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// The object that burns.
     pub mesh: MeshSource,
+    /// Objects that burn beside it.
+    pub objects: Vec<Beside>,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
     /// Factors of the mesh along x, y and z.
@@ -55,6 +58,7 @@ impl Default for Setup {
         Setup {
             parameters: Parameters::default(),
             mesh: MeshSource::Bunny,
+            objects: Vec::new(),
             crease_deg: CREASE_DEG,
             stretch: Vec3::ONE,
             triangles: None,
@@ -100,7 +104,7 @@ impl Setup {
     }
 
     /// The parameters beside the numbers.
-    fn own_parameters() -> [Parameter<Self>; 6] {
+    fn own_parameters() -> [Parameter<Self>; 7] {
         [
             Parameter::new("mesh", field!(Setup.mesh))
                 .help(
@@ -109,6 +113,12 @@ impl Setup {
                 )
                 .cost(Cost::Buffers)
                 .everyday(),
+            Parameter::new("object", field!(Setup.objects))
+                .help(
+                    "Another object that burns beside the first: a shape or file with its place, @X,Y,Z[,DEGREES[,SCALE]]: \
+                     the middle of its lower side in diagonals of the first, its turn about the vertical, and its diagonal",
+                )
+                .cost(Cost::Buffers),
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("stretch", field!(Setup.stretch))
                 .range(Range::above(0.0).to(1000.0))
@@ -159,6 +169,9 @@ impl Study for Setup {
         let mut mesh = self.mesh.load_with(&options)?;
         if self.stretch != Vec3::ONE {
             mesh = mesh.placed(&Mat4::from_scale(self.stretch));
+        }
+        if !self.objects.is_empty() {
+            mesh = together(mesh, &self.objects, &options)?;
         }
         let mesh = match self.triangles {
             Some(count) => with_triangles(&mesh, count as usize),
@@ -214,7 +227,8 @@ impl Study for Setup {
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
-        let promised = self.mesh.promised_triangles()?.unwrap_or(0);
+        let sources = self.objects.iter().map(|object| &object.source).chain([&self.mesh]);
+        let promised = promised_triangles(sources)?;
         // Those that are asked for are made of any number.
         Ok(if self.triangles.is_some() { 0 } else { promised })
     }

@@ -17,6 +17,7 @@ mod puddle;
 mod refinement;
 mod refusals;
 mod solid;
+mod spreading;
 mod textures;
 mod time;
 mod twin;

@@ -1,8 +1,8 @@
 //! Heat that climbs along the surface: the way of the fire from its sources, in position of 3.3's straight line. Ours.
 //!
 //! A way over the triangles counts by its length, of which a part that rises counts less: flames reach farther up than
-//! to the sides, and lean with the wind. Through the air heat comes too, but a third as far, so that fire leaps to a separate part or over a
-//! gap only where the surface leads far around.
+//! to the sides, and lean with the wind. Through the air heat comes from any vertex to any other at three times the
+//! length, so that fire leaps to a separate part, or over a gap, only where the surface leads far around.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -10,6 +10,7 @@ use std::collections::{BinaryHeap, HashMap};
 use glam::{DVec3, Vec3};
 
 use super::Incidence;
+use crate::scene::Bounds;
 
 /// Length of a way through the air, over that of one on the surface which takes the heat as long.
 pub const THROUGH_AIR: f64 = 3.0;
@@ -23,6 +24,70 @@ const RISE_PER_S: f64 = 0.17;
 /// The lean of flames in a wind, diagonals a second: straight up without any, `climb` long where they rise as ever.
 pub fn lean(climb: f32, wind: Vec3) -> DVec3 {
     f64::from(climb) * (DVec3::Y + wind.as_dvec3() / RISE_PER_S)
+}
+
+/// Voxels along the longest side of the box around the object, through which heat comes in the air.
+const VOXELS: f64 = 32.0;
+
+/// The air around the vertices, in voxels.
+struct Air {
+    low: DVec3,
+    voxel: f64,
+    counts: [i32; 3],
+    /// The vertices in each voxel.
+    inside: Incidence,
+}
+
+impl Air {
+    fn new(positions: &[Vec3]) -> Self {
+        let bounds = Bounds::of_points(positions.iter().copied());
+        let low = bounds.min.as_dvec3();
+        let size = bounds.max.as_dvec3() - low;
+        let voxel = size.max_element().max(f64::MIN_POSITIVE) / VOXELS;
+        let counts = size.to_array().map(|side| ((side / voxel).ceil() as i32).clamp(1, VOXELS as i32));
+        let mut air = Air { low, voxel, counts, inside: Incidence { offsets: Vec::new(), entries: Vec::new() } };
+        let voxels: Vec<u32> = positions.iter().map(|place| air.voxel_of(place.as_dvec3()) as u32).collect();
+        let mut offsets = vec![0; 1 + counts.iter().product::<i32>() as usize];
+        voxels.iter().for_each(|&voxel| offsets[voxel as usize + 1] += 1);
+        for voxel in 1..offsets.len() {
+            offsets[voxel] += offsets[voxel - 1];
+        }
+        let mut entries: Vec<u32> = (0..positions.len() as u32).collect();
+        entries.sort_by_key(|vertex| voxels[*vertex as usize]);
+        air.inside = Incidence { offsets, entries };
+        air
+    }
+
+    fn count(&self) -> usize {
+        self.inside.offsets.len() - 1
+    }
+
+    fn number(&self, [x, y, z]: [i32; 3]) -> usize {
+        ((z * self.counts[1] + y) * self.counts[0] + x) as usize
+    }
+
+    fn voxel_of(&self, place: DVec3) -> usize {
+        let at = ((place - self.low) / self.voxel).to_array();
+        self.number([0, 1, 2].map(|axis| (at[axis] as i32).clamp(0, self.counts[axis] - 1)))
+    }
+
+    fn steps(&self, voxel: usize) -> [i32; 3] {
+        let [x, y, _] = self.counts;
+        let voxel = voxel as i32;
+        [voxel % x, voxel / x % y, voxel / (x * y)]
+    }
+
+    fn middle(&self, voxel: usize) -> DVec3 {
+        self.low + self.voxel * (DVec3::from(self.steps(voxel).map(f64::from)) + 0.5)
+    }
+
+    /// The voxels around one.
+    fn around(&self, voxel: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.steps(voxel);
+        let near = (0..27).map(move |i| [own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1]);
+        let is_inside = |at: &[i32; 3]| (0..3).all(|axis| (0..self.counts[axis]).contains(&at[axis]));
+        near.filter(is_inside).map(|at| self.number(at)).filter(move |other| *other != voxel)
+    }
 }
 
 /// Length of the fire's way to each vertex, diagonals; what comes along `lean` counts 1 / (1 + its length) of its own.
@@ -53,24 +118,37 @@ pub fn ways(
         beside.entry(a).or_default().push(b);
         beside.entry(b).or_default().push(a);
     }
+    // Behind the vertices come the voxels, each with the vertex that its heat comes from in a straight line.
+    let air = Air::new(positions);
+    let mut in_air = vec![(f64::INFINITY, 0); air.count()];
     // Ways are not negative, so that their bits are in their order.
     let mut open: BinaryHeap<Reverse<(u64, usize)>> =
         vertices.map(|vertex| Reverse((ways[vertex].to_bits(), vertex))).collect();
-    while let Some(Reverse((bits, vertex))) = open.pop() {
-        if f64::from_bits(bits) > ways[vertex] {
-            continue;
-        }
+    while let Some(Reverse((bits, node))) = open.pop() {
         let mut reached: Vec<(usize, f64)> = Vec::new();
-        for &to in beside.get(&vertex).into_iter().flatten() {
-            reached.push((to, ways[vertex] + length(place(vertex), place(to), lean)));
-        }
-        for entry in incidence.of(vertex as u32) {
-            let corners = triangles[(entry / 4) as usize].map(|corner| corner as usize);
-            let corner = (entry % 4) as usize;
-            let [first, second] = [corners[(corner + 1) % 3], corners[(corner + 2) % 3]];
-            for (to, other) in [(first, second), (second, first)] {
-                let ends = [vertex, other];
-                reached.push((to, across(ends.map(place), ends.map(|end| ways[end]), place(to), lean)));
+        let from = match node.checked_sub(positions.len()) {
+            None if f64::from_bits(bits) > ways[node] => continue,
+            None => {
+                reached.extend(along_surface(node, &ways, (positions, triangles), &incidence, lean));
+                let over = beside.get(&node).into_iter().flatten();
+                reached.extend(over.map(|&to| (to, ways[node] + length(place(node), place(to), lean))));
+                (node, vec![air.voxel_of(place(node))])
+            }
+            Some(voxel) if f64::from_bits(bits) > in_air[voxel].0 => continue,
+            Some(voxel) => {
+                let from = in_air[voxel].1;
+                let through = |to: DVec3| ways[from] + THROUGH_AIR * length(place(from), to, lean);
+                let inside = air.inside.of(voxel as u32).iter().map(|to| *to as usize);
+                reached.extend(inside.map(|to| (to, through(place(to)))));
+                (from, air.around(voxel).collect())
+            }
+        };
+        let (from, voxels) = from;
+        for voxel in voxels {
+            let way = ways[from] + THROUGH_AIR * length(place(from), air.middle(voxel), lean);
+            if way < CLOSER * in_air[voxel].0 {
+                in_air[voxel] = (way, from);
+                open.push(Reverse((way.to_bits(), positions.len() + voxel)));
             }
         }
         for (to, way) in reached {
@@ -81,6 +159,26 @@ pub fn ways(
         }
     }
     ways
+}
+
+/// The ways on from a vertex to the corners of its triangles.
+fn along_surface(
+    vertex: usize,
+    ways: &[f64],
+    (positions, triangles): (&[Vec3], &[[u32; 3]]),
+    incidence: &Incidence,
+    lean: DVec3,
+) -> Vec<(usize, f64)> {
+    let place = |vertex: usize| positions[vertex].as_dvec3();
+    let of_triangle = |entry: &u32| {
+        let corners = triangles[(entry / 4) as usize].map(|corner| corner as usize);
+        let [first, second] = [1, 2].map(|step| corners[(*entry as usize % 4 + step) % 3]);
+        [(first, second), (second, first)].map(|(to, other)| {
+            let ends = [vertex, other];
+            (to, across(ends.map(place), ends.map(|end| ways[end]), place(to), lean))
+        })
+    };
+    incidence.of(vertex as u32).iter().flat_map(of_triangle).collect()
 }
 
 /// Of a straight way, as heat takes it.
@@ -194,10 +292,26 @@ mod tests {
         );
         let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
         assert!((ways[count as usize] - 0.3).abs() < 1e-6, "through the air: {}", ways[count as usize]);
-        assert!((ways[count as usize + 20] - 1.3).abs() < 1e-6, "and on along the surface");
+        // At the best angle, whose sine is a third, or nearly so.
+        let aside = ways[count as usize + 20];
+        assert!(aside > 1.28 && aside < 1.31, "along the surface and then through the air: {aside}");
         for (way, place) in ways.iter().zip(&positions) {
             let straight = f64::from(place.length());
             assert!(*way >= 0.999 * straight && *way <= THROUGH_AIR * straight + 1e-6, "{place}: {way}");
         }
+    }
+
+    #[test]
+    fn it_goes_on_from_part_to_part() {
+        // In a row, 0.1 apart.
+        let (near, triangles) = sheet(21);
+        let count = near.len() as u32;
+        let row = (0..3).flat_map(|part| near.iter().map(move |p| *p + 1.1 * part as f32 * Vec3::X));
+        let positions: Vec<Vec3> = row.collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..3).flat_map(|part| triangles.iter().map(move |t| t.map(|vertex| vertex + part * count))).collect();
+        let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
+        let last = ways[2 * count as usize + 20];
+        assert!((last - 3.6).abs() < 0.02, "three sheets and two gaps: {last}");
     }
 }
