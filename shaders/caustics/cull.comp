@@ -236,8 +236,13 @@ void main() {
     for (uint round = 0u; round < 3u * steps.groups; round++) {
         narrow(beam, first, end);
     }
-    for (uint part_base = base; part_base < min(base + 32u * PARTS, cull.planes); part_base += 32u) {
-        uint from = max(first, part_base);
+    uint words = triangle * cull.words + base / 32u;
+    for (uint word = 0u; word < min(PARTS, cull.words - base / 32u); word++) {
+        kept.list[words + word] = 0u;
+    }
+    // From the first plane on, not from a word's: what a beam may light on a few planes is then one part, whose texels are seen once.
+    for (uint part_base = first; part_base < end; part_base += 32u) {
+        uint from = part_base;
         uint to = min(end, part_base + 32u);
         if (steps.groups == 1u) {
             narrow(beam, from, to);
@@ -263,6 +268,15 @@ void main() {
         if (mask != 0u && steps.texels == 1u) {
             mask = covered(beam, part_base, mask);
         }
-        kept.list[triangle * cull.words + part_base / 32u] = mask;
+        uint word = words + (part_base - base) / 32u;
+        uint bit = part_base % 32u;
+        if (mask != 0u) {
+            kept.list[word] |= mask << bit;
+            // Shifted twice, since all 32 at once shift nothing.
+            uint rest = (mask >> 1u) >> (31u - bit);
+            if (rest != 0u) {
+                kept.list[word + 1u] |= rest;
+            }
+        }
     }
 }
