@@ -1,7 +1,9 @@
 #version 450
+#pragma variants LAYERS=one,several
 
 // Caustics casting by projective texture mapping (section 4.6): colour = (I_c x I_d) + I_a, eq. 4-19 and 4-20. The combined map
-// holds the product; it lights only the surface that the position map saw, the rest of the receiver has ambient light alone.
+// holds the product; it lights only the surface that the position map saw, and with LAYERS=several those below it that have maps of
+// their own; the rest of the receiver has ambient light alone.
 
 layout(location = 0) in vec3 world;
 layout(location = 1) in vec3 world_normal;
@@ -12,6 +14,10 @@ layout(location = 1) in vec3 world_normal;
 layout(set = 0, binding = 1) uniform texture2D combined_map;
 layout(set = 0, binding = 2) uniform texture2D position_map;
 layout(set = 0, binding = 3) uniform sampler nearest;
+#ifdef LAYERS_SEVERAL
+layout(set = 0, binding = 4) uniform texture2DArray hidden_positions;
+layout(set = 0, binding = 5) uniform texture2DArray hidden_light; // combined maps
+#endif
 
 layout(location = 0) out vec4 color;
 
@@ -41,8 +47,16 @@ void main() {
         ivec2 texel = ivec2(clamp(base + corner, vec2(0.0), vec2(texels - 1.0)));
         float height = texelFetch(sampler2D(position_map, nearest), texel, 0).r;
         float expected = point.y + dot(slope, (corner - fraction) * texel_m);
+        vec3 light = texelFetch(sampler2D(combined_map, nearest), texel, 0).rgb;
+#ifdef LAYERS_SEVERAL
+        int layers = textureSize(sampler2DArray(hidden_positions, nearest), 0).z;
+        for (int layer = 0; layer < layers && abs(height - expected) > tolerance_m; layer++) {
+            height = texelFetch(sampler2DArray(hidden_positions, nearest), ivec3(texel, layer), 0).r;
+            light = texelFetch(sampler2DArray(hidden_light, nearest), ivec3(texel, layer), 0).rgb;
+        }
+#endif
         float weight = abs(height - expected) <= tolerance_m ? weights.x * weights.y : 0.0;
-        lit += weight * texelFetch(sampler2D(combined_map, nearest), texel, 0).rgb;
+        lit += weight * light;
         total += weight;
     }
     // Texels of other surfaces say nothing about this one: the rest is spread over those that match, as long as they are a quarter of

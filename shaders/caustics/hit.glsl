@@ -28,7 +28,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Heights {
     float list[]; // of the position map's texels, row by row
 } heights;
 
-#ifdef SHADOW_ON
+#if defined(SHADOW_ON) || defined(LAYERS_SEVERAL)
 layout(set = 0, binding = 1) uniform sampler nearest;
 #endif
 
@@ -63,28 +63,31 @@ float height_at(ivec2 texel) {
     return heights.list[uint(inside.y) * plane.map_size + uint(inside.x)];
 }
 
+#include "caustics/layers-{LAYERS}.glsl"
+
 struct Surface {
     float height; // below -1e29 where one of the four texels holds no receiver and `whole` was asked for
     float steepness; // greatest difference of neighbouring texels' heights
 };
 
-// The surface at a place in texels. Without `whole`, a texel that holds no receiver has the height `instead`.
-Surface surface_at(vec2 place, float instead, bool whole) {
+// The surface at a place in texels, of those above one another the nearest to the height `about`. Without `whole`, a texel that holds
+// no receiver has that height.
+Surface surface_at(vec2 place, float about, bool whole) {
     vec2 from = place - 0.5;
     vec2 base = floor(from);
     vec2 t = from - base;
     ivec2 texel = ivec2(base);
-    float a = height_at(texel);
-    float b = height_at(texel + ivec2(1, 0));
-    float c = height_at(texel + ivec2(0, 1));
-    float d = height_at(texel + ivec2(1, 1));
+    float a = height_near(texel, about);
+    float b = height_near(texel + ivec2(1, 0), about);
+    float c = height_near(texel + ivec2(0, 1), about);
+    float d = height_near(texel + ivec2(1, 1), about);
     if (whole && !is_receiver(min(min(a, b), min(c, d)))) {
         return Surface(-1.0e30, 0.0);
     }
-    a = is_receiver(a) ? a : instead;
-    b = is_receiver(b) ? b : instead;
-    c = is_receiver(c) ? c : instead;
-    d = is_receiver(d) ? d : instead;
+    a = is_receiver(a) ? a : about;
+    b = is_receiver(b) ? b : about;
+    c = is_receiver(c) ? c : about;
+    d = is_receiver(d) ? d : about;
     vec2 along_u = vec2(b - a, d - c);
     vec2 along_w = vec2(c - a, d - b);
     float u = mix(along_u.x, along_u.y, t.y);
@@ -160,12 +163,12 @@ float difference(float before, float here, float after) {
     return greater > 4.0 * lesser + sqrt(plane.texel_area_m2) ? (abs(one) < abs(other) ? one : other) : 0.5 * (one + other);
 }
 
-// How the surface rises from a texel to the next, along U and along W, metres; level where the texel holds no receiver.
-vec2 steepness_at(ivec2 texel) {
-    float here = height_at(texel);
+// How the surface of that height rises from a texel to the next, along U and along W, metres; level where the texel holds no receiver.
+vec2 steepness_at(ivec2 texel, float about) {
+    float here = height_near(texel, about);
     if (!is_receiver(here)) {
         return vec2(0.0);
     }
-    return vec2(difference(height_at(texel - ivec2(1, 0)), here, height_at(texel + ivec2(1, 0))),
-        difference(height_at(texel - ivec2(0, 1)), here, height_at(texel + ivec2(0, 1))));
+    return vec2(difference(height_near(texel - ivec2(1, 0), here), here, height_near(texel + ivec2(1, 0), here)),
+        difference(height_near(texel - ivec2(0, 1), here), here, height_near(texel + ivec2(0, 1), here)));
 }

@@ -1,5 +1,5 @@
 #version 450
-#pragma variants SHADOW=off,on
+#pragma variants SHADOW=off,on LAYERS=one,several
 
 // Where the ray of each vertex of the refined water meets the receiver first (section 6.3), in the position map's texels.
 
@@ -17,6 +17,37 @@ layout(std430, set = 0, binding = 11) buffer Intensities {
     float list[]; // I_c where each ray lands, negative where the light is turned over, 0 where it is not known
 } intensities;
 
+// How far above a ray a surface may be at the texel that the ray comes to, as a slope that goes on rising; farther, it is an edge.
+float most_rise(ivec2 texel, float found, vec2 slope) {
+    vec2 ahead = slope * plane.texels_per_m;
+    ivec2 onward = abs(ahead.x) > abs(ahead.y) ? ivec2(ahead.x > 0.0 ? 1 : -1, 0) : ivec2(0, ahead.y > 0.0 ? 1 : -1);
+    float beyond = height_near(texel + onward, found);
+    float rise = is_receiver(beyond) ? abs(beyond - found) : 0.0;
+    return 1.5 * rise + 2.0 * sqrt(plane.texel_area_m2);
+}
+
+// The height of what a ray meets at a texel that it comes to at the height `above` and leaves at `height`: above `above` where it comes
+// in by the side, below -1e29 where it goes on.
+float met_at(ivec2 texel, float above, float height, vec2 slope) {
+#ifdef LAYERS_SEVERAL
+    float over = 1.0e30;
+    for (int layer = 0; layer < layer_count(); layer++) {
+        float top = height_of(layer, texel);
+        if (top <= above) {
+            float ceiling = layer > 0 ? ceiling_of(layer, texel) : 1.0e30;
+            // A sheet that goes on rising is met; under any other the ray passes.
+            bool is_inside = is_receiver(ceiling) ? above > ceiling : over - above <= most_rise(texel, over, slope);
+            return is_inside ? over : (top >= height ? top : -1.0e30);
+        }
+        over = top;
+    }
+    return over;
+#else
+    float top = height_at(texel);
+    return top >= height ? top : -1.0e30;
+#endif
+}
+
 // The first place where a ray meets the receiver: texels in x and y, the height in z, and in w 1, or 0 where it meets nothing that
 // the map holds. A receiver is solid below what the light sees of it: what enters by its side is lost.
 vec4 first_hit(vec3 origin, vec2 slope) {
@@ -30,7 +61,7 @@ vec4 first_hit(vec3 origin, vec2 slope) {
             return vec4(0.0);
         }
         top = min(top, range.y);
-        bottom = max(bottom, range.x);
+        bottom = max(bottom, least_near(range));
     }
     if (top < bottom) {
         return vec4(0.0);
@@ -52,7 +83,7 @@ vec4 first_hit(vec3 origin, vec2 slope) {
         }
         for (int i = from; i <= to && near.y >= lowest; i++) {
             height = i == steps ? bottom : mix(top, bottom, float(i) / float(steps));
-            found = height_at(ivec2(floor(place_at(origin, slope, height))));
+            found = met_at(ivec2(floor(place_at(origin, slope, height))), above, height, slope);
             if (found >= height) {
                 break;
             }
@@ -64,12 +95,8 @@ vec4 first_hit(vec3 origin, vec2 slope) {
     }
     vec2 end = place_at(origin, slope, height);
     if (found > above) {
-        // Stepped in at the side: of a slope that goes on rising, or of an edge.
-        vec2 ahead = slope * plane.texels_per_m;
-        ivec2 onward = abs(ahead.x) > abs(ahead.y) ? ivec2(ahead.x > 0.0 ? 1 : -1, 0) : ivec2(0, ahead.y > 0.0 ? 1 : -1);
-        float beyond = height_at(ivec2(floor(end)) + onward);
-        float rise = is_receiver(beyond) ? abs(beyond - found) : 0.0;
-        if (found - above > 1.5 * rise + 2.0 * sqrt(plane.texel_area_m2)) {
+        // Stepped in at the side.
+        if (found - above > most_rise(ivec2(floor(end)), found, slope)) {
             return vec4(0.0);
         }
     }

@@ -1,4 +1,5 @@
 #version 450
+#pragma variants LAYERS=one,several
 
 // Each triangle of the refined water once, where its light lands (section 6.3): its flux over the texels that it covers there, by the
 // exact area of each and linear between its corners. Those whose corners do not land on one surface are listed for the next pass. The
@@ -27,7 +28,7 @@ const float MOST_TEXELS = 8000.0;
 // True where the surface is at that place, to half a texel.
 bool is_on_surface(vec3 at) {
     float texel_m = sqrt(plane.texel_area_m2);
-    Surface surface = surface_at(at.xy, 0.0, true);
+    Surface surface = surface_at(at.xy, at.z, true);
     return abs(surface.height - at.z) <= 0.5 * texel_m * length(vec2(1.0, min(surface.steepness / texel_m, 4.0)));
 }
 
@@ -57,7 +58,7 @@ float divisor(Ray ray_a, Ray ray_b, Ray ray_c, vec3 a, vec3 b, vec3 c) {
     float longest = max(dot(to_b, to_b), max(dot(to_c, to_c), dot(to_b - to_c, to_b - to_c)));
     if (abs(there) < LEAST_AREA * longest || longest < 0.01) {
         vec2 slope = (ray_a.slope + ray_b.slope + ray_c.slope) / 3.0;
-        return 1.0 + dot(steepness_at(ivec2(floor((a.xy + b.xy + c.xy) / 3.0))) * plane.texels_per_m, slope);
+        return 1.0 + dot(steepness_at(ivec2(floor((a.xy + b.xy + c.xy) / 3.0)), (a.z + b.z + c.z) / 3.0) * plane.texels_per_m, slope);
     }
     // On the plane across V at their mean height.
     vec3 rise = vec3(a.z, b.z, c.z) - (a.z + b.z + c.z) / 3.0;
@@ -83,24 +84,34 @@ struct Landed {
     float light;
     vec2 middle;
     vec2 rise; // of the light from texel to texel, of its mean
+    float height; // at its middle, metres
+    vec2 climb; // of the height from texel to texel
 };
 
 // By which light may rise from texel to texel: of a texel that is covered in part the light is not told to the last digit. What rises
 // more is on few texels, which show as edges whatever is done.
 const float MOST_RISE = 0.15;
 
+// How what has these values at a triangle's corners rises from texel to texel; not at all where it is too thin to tell.
+vec2 gradient_of(vec2 p, vec2 q, vec2 r, vec3 values) {
+    vec2 to_q = q - p;
+    vec2 to_r = r - p;
+    float there = to_q.x * to_r.y - to_q.y * to_r.x;
+    if (abs(there) < 1.0e-3) {
+        return vec2(0.0);
+    }
+    vec2 more = vec2(values.y - values.x, values.z - values.x);
+    return (more.x * vec2(to_r.y, -to_r.x) + more.y * vec2(-to_q.y, to_q.x)) / there;
+}
+
 // How the light of a triangle rises from texel to texel, of its mean: linear between its corners', as far as they are known and
 // none of it is turned over.
 vec2 rise_of(vec2 p, vec2 q, vec2 r, vec3 lights) {
     float mean = (lights.x + lights.y + lights.z) / 3.0;
-    vec2 to_q = q - p;
-    vec2 to_r = r - p;
-    float there = to_q.x * to_r.y - to_q.y * to_r.x;
-    if (min(lights.x, min(lights.y, lights.z)) * max(lights.x, max(lights.y, lights.z)) <= 0.0 || abs(there) < 1.0e-3) {
+    if (min(lights.x, min(lights.y, lights.z)) * max(lights.x, max(lights.y, lights.z)) <= 0.0) {
         return vec2(0.0);
     }
-    vec2 more = vec2(lights.y - lights.x, lights.z - lights.x) / mean;
-    vec2 rise = (more.x * vec2(to_r.y, -to_r.x) + more.y * vec2(-to_q.y, to_q.x)) / there;
+    vec2 rise = gradient_of(p, q, r, lights / mean);
     return rise * min(1.0, MOST_RISE / max(abs(rise.x) + abs(rise.y), 1.0e-9));
 }
 
@@ -115,8 +126,13 @@ float light_in_texel(Landed whole, float of_row, float x) {
     return max(of_row + whole.rise.x * middle, 0.0);
 }
 
+// The height of a triangle at the middle of a texel.
+float height_in_texel(Landed whole, float x, float y) {
+    return whole.height + dot(whole.climb, vec2(x, y) + 0.5 - whole.middle);
+}
+
 Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec3 lights, vec2 base) {
-    Landed whole = Landed(false, vec2(0.0), vec2(0.0), vec2(0.0), vec2(1.0e6), vec2(-1.0e6), 0.0, vec2(0.0), vec2(0.0));
+    Landed whole = Landed(false, vec2(0.0), vec2(0.0), vec2(0.0), vec2(1.0e6), vec2(-1.0e6), 0.0, vec2(0.0), vec2(0.0), 0.0, vec2(0.0));
     float least = min(a.w, min(b.w, c.w));
     vec2 low = min(a.xy, min(b.xy, c.xy));
     vec2 high = max(a.xy, max(b.xy, c.xy));
@@ -139,6 +155,8 @@ Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec3 ligh
     whole.r = c.xy - base;
     whole.middle = (whole.p + whole.q + whole.r) / 3.0;
     whole.rise = rise_of(whole.p, whole.q, whole.r, lights);
+    whole.height = (a.z + b.z + c.z) / 3.0;
+    whole.climb = gradient_of(whole.p, whole.q, whole.r, vec3(a.z, b.z, c.z));
     widen(whole.p, whole.q, whole.r);
     whole.low = min(whole.p, min(whole.q, whole.r));
     whole.high = max(whole.p, max(whole.q, whole.r));
@@ -203,20 +221,25 @@ void main() {
             // A low word that is full is left for a moment: this is rare, and a place of its own makes the rest faster.
             bool is_full = false;
             ivec2 texel = origin + ivec2(x, y);
+            int layer = 0;
             while (x <= last && !is_full) {
                 texel = origin + ivec2(x, y);
                 float one_in_texel = light_in_texel(one, one_in_row, float(x));
                 float other_in_texel = light_in_texel(other, other_in_row, float(x));
+                float one_height = height_in_texel(one, float(x), float(y));
+                float other_height = height_in_texel(other, float(x), float(y));
                 x++;
                 float after = left_of(row, float(x));
                 float after_beside = left_of(beside, float(x));
-                float light = (before - after) * one_in_texel + (before_beside - after_beside) * other_in_texel;
-                is_full = add_low(texel, max(light, 0.0));
+                float of_one = (before - after) * one_in_texel;
+                float of_other = (before_beside - after_beside) * other_in_texel;
+                layer = layer_near(texel, of_one > of_other ? one_height : other_height);
+                is_full = add_low(texel, layer, max(of_one + of_other, 0.0));
                 before = after;
                 before_beside = after_beside;
             }
             if (is_full) {
-                add_high(texel);
+                add_high(texel, layer);
             }
         }
         is_cut = is_cut || x <= last;

@@ -1,5 +1,5 @@
 #version 450
-#pragma variants SHADOW=off,on
+#pragma variants SHADOW=off,on LAYERS=one,several
 
 // The triangles of the refined water that do not land whole on one surface (section 6.3), by reference planes as in section 4.4, of
 // which each texel has its own, at its height and as steep as the surface there: it takes the part of the beam that it covers, where
@@ -25,13 +25,19 @@ const float LEAST_MOVED = 0.3;
 // Set where the driver leaves a loop before its end.
 bool is_cut = false;
 
-// True where the receiver stands between a texel and the light: a beam ends at the first surface that it meets. Texel after texel,
-// but where nothing near the way is high enough.
-bool is_hidden(vec2 place, float height, vec2 slope, float top) {
+// True where the receiver stands between the surface of that layer at a texel and the light: a beam ends at the first surface that it
+// meets. Texel after texel, but where nothing near the way is high enough.
+bool is_hidden(vec2 place, int layer, float height, vec2 slope, float top) {
     vec2 back = -slope * plane.texels_per_m;
     vec2 path = abs(back) * (top - height);
     int steps = int(min(max(path.x, path.y), float(MOST_STEPS)));
     int from = 0;
+    // The way leaves the texel halfway through its first step.
+    float before = height + 0.5 * (top - height) / float(max(steps, 1));
+    int room = layer;
+    if (layer > 0 && room_at(ivec2(floor(place)), before) != layer) {
+        return true;
+    }
     for (; from < steps; from += STRIDE) {
         int to = min(from + STRIDE, steps);
         float least = (top - height) * float(from) / float(steps);
@@ -42,11 +48,19 @@ bool is_hidden(vec2 place, float height, vec2 slope, float top) {
             for (; i <= to; i++) {
                 float rise = (top - height) * float(i) / float(steps);
                 ivec2 texel = ivec2(floor(place + back * rise));
-                if (is_in_map(texel) && height_at(texel) > height + rise) {
-                    return true;
+                if (is_in_map(texel)) {
+                    // Under another surface the way may pass it between two steps.
+                    int next = room_at(texel, height + rise);
+                    if (next < 0 || (room > 0 && room_at(texel, before) > next)) {
+                        return true;
+                    }
+                    room = next;
                 }
+                before = height + rise;
             }
             is_cut = is_cut || i <= to;
+        } else {
+            room = 0;
         }
     }
     is_cut = is_cut || from < steps;
@@ -150,65 +164,67 @@ void main() {
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
-        // Every eighth texel of the rows one after the other: a number in the row, and the row.
-        float rows_a_column = 1.0 / float(way.columns);
-        int skipped = int((float(part) + 0.5) * rows_a_column);
-        int y = way.from.y + skipped;
-        int number = part - skipped * way.columns;
-        while (y <= way.to.y) {
-            // The next texel that the beam passes at its height. What follows costs far more than the search, and a processor of
-            // several lanes takes it for all of them together: each has found one then.
-            bool is_passed = false;
-            ivec2 texel = ivec2(0);
-            float height = 0.0;
-            vec2 p = vec2(0.0);
-            vec2 q = vec2(0.0);
-            vec2 r = vec2(0.0);
-            while (y <= way.to.y && !is_passed) {
-                vec2 columns = columns_of(way, y);
-                texel = ivec2(int(columns.x) + number, y);
-                height = height_at(texel);
-                bool is_met = float(texel.x) <= columns.y && is_receiver(height) && height < lowest;
-                p = beam.a - beam.lean_a * height - vec2(texel);
-                q = beam.b - beam.lean_b * height - vec2(texel);
-                r = beam.c - beam.lean_c * height - vec2(texel);
-                is_passed = is_met && passes(p, q, r, 0.5 + reach);
-                number += int(SHARING);
-                int rows = int((float(number) + 0.5) * rows_a_column);
-                number -= rows * way.columns;
-                y += rows;
+        for (int layer = 0; layer < layer_count(); layer++) {
+            // Every eighth texel of the rows one after the other: a number in the row, and the row.
+            float rows_a_column = 1.0 / float(way.columns);
+            int skipped = int((float(part) + 0.5) * rows_a_column);
+            int y = way.from.y + skipped;
+            int number = part - skipped * way.columns;
+            while (y <= way.to.y) {
+                // The next texel that the beam passes at its height. What follows costs far more than the search, and a processor of
+                // several lanes takes it for all of them together: each has found one then.
+                bool is_passed = false;
+                ivec2 texel = ivec2(0);
+                float height = 0.0;
+                vec2 p = vec2(0.0);
+                vec2 q = vec2(0.0);
+                vec2 r = vec2(0.0);
+                while (y <= way.to.y && !is_passed) {
+                    vec2 columns = columns_of(way, y);
+                    texel = ivec2(int(columns.x) + number, y);
+                    height = height_of(layer, texel);
+                    bool is_met = float(texel.x) <= columns.y && is_receiver(height) && height < lowest;
+                    p = beam.a - beam.lean_a * height - vec2(texel);
+                    q = beam.b - beam.lean_b * height - vec2(texel);
+                    r = beam.c - beam.lean_c * height - vec2(texel);
+                    is_passed = is_met && passes(p, q, r, 0.5 + reach);
+                    number += int(SHARING);
+                    int rows = int((float(number) + 0.5) * rows_a_column);
+                    number -= rows * way.columns;
+                    y += rows;
+                }
+                if (!is_passed) {
+                    continue;
+                }
+                float turned = 1.0;
+                vec2 steepness = most_moved > 0.0 ? steepness_at(texel, height) : vec2(0.0);
+                float across_it = 1.0 + dot(steepness, lean);
+                if (across_it > LEAST_TURNED && (abs(steepness.x) + abs(steepness.y)) * max(abs(lean.x), abs(lean.y)) < most_moved) {
+                    // From the level plane to the one as steep as the surface, where the beam lights 1 / turned of the area.
+                    turned = across_it;
+                    p -= lean * (dot(p - 0.5, steepness) / turned);
+                    q -= lean * (dot(q - 0.5, steepness) / turned);
+                    r -= lean * (dot(r - 0.5, steepness) / turned);
+                }
+                widen(p, q, r);
+                Row row;
+                row.p = side_in_row(p, q, 0.0, 1.0);
+                row.q = side_in_row(q, r, 0.0, 1.0);
+                row.r = side_in_row(r, p, 0.0, 1.0);
+                float share = (left_of(row, 0.0) - left_of(row, 1.0)) / area_of(p, q, r);
+                vec2 place = vec2(texel) + 0.5;
+                if (share < 1.0e-6 || is_hidden(place, layer, height, slope, straddler.top)) {
+                    continue;
+                }
+                float descent = origin.y - plane.middle - height;
+                vec2 beside = (place - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
+                vec3 point = vec3(beside.x, height + plane.middle, beside.y);
+                if (reaches(point, vec3(beside - slope * descent, origin.y).xzy)) {
+                    add_light(texel, layer, share * flux / turned * exp(-plane.absorption_per_m * (descent * secant)));
+                }
             }
-            if (!is_passed) {
-                continue;
-            }
-            float turned = 1.0;
-            vec2 steepness = most_moved > 0.0 ? steepness_at(texel) : vec2(0.0);
-            float across_it = 1.0 + dot(steepness, lean);
-            if (across_it > LEAST_TURNED && (abs(steepness.x) + abs(steepness.y)) * max(abs(lean.x), abs(lean.y)) < most_moved) {
-                // From the level plane to the one as steep as the surface, where the beam lights 1 / turned of the area.
-                turned = across_it;
-                p -= lean * (dot(p - 0.5, steepness) / turned);
-                q -= lean * (dot(q - 0.5, steepness) / turned);
-                r -= lean * (dot(r - 0.5, steepness) / turned);
-            }
-            widen(p, q, r);
-            Row row;
-            row.p = side_in_row(p, q, 0.0, 1.0);
-            row.q = side_in_row(q, r, 0.0, 1.0);
-            row.r = side_in_row(r, p, 0.0, 1.0);
-            float share = (left_of(row, 0.0) - left_of(row, 1.0)) / area_of(p, q, r);
-            vec2 place = vec2(texel) + 0.5;
-            if (share < 1.0e-6 || is_hidden(place, height, slope, straddler.top)) {
-                continue;
-            }
-            float descent = origin.y - plane.middle - height;
-            vec2 beside = (place - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
-            vec3 point = vec3(beside.x, height + plane.middle, beside.y);
-            if (reaches(point, vec3(beside - slope * descent, origin.y).xzy)) {
-                add_light(texel, share * flux / turned * exp(-plane.absorption_per_m * (descent * secant)));
-            }
+            is_cut = is_cut || y <= way.to.y;
         }
-        is_cut = is_cut || y <= way.to.y;
     }
     if (is_cut || at < straddling.count) {
         atomicAdd(unfinished.straddle, 1u);

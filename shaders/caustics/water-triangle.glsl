@@ -53,7 +53,7 @@ vec2 heights_met(Ray a, Ray b, Ray c, Ray d) {
         }
         vec2 range = heights_within(low, high);
         top = min(top, range.y);
-        bottom = max(bottom, range.x);
+        bottom = max(bottom, least_near(range));
         if (top < bottom) {
             return vec2(1.0, -1.0);
         }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::cli::program::fumarole;
 
 /// Options of each paper, in whose frames every pass of it occurs.
-const FRAMES: [(&str, &str); 14] = [
+const FRAMES: [(&str, &str); 15] = [
     ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --variant all --object teapot"),
     ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --simulation sph --variant gpu-driven"),
     ("gas", "--size 45x31 --steps 8 --table 8 --variant all"),
@@ -19,6 +19,7 @@ const FRAMES: [(&str, &str); 14] = [
         "--size 96x64 --map-size 64 --water-triangles 500 --no-mrt --coverage 2 --shadows --variant level-map",
     ),
     ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --smart --variant culled"),
+    ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --layers 2 --variant hit"),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant all"),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --no-preload --variant shell"),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant melting"),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::hidden_surfaces::HiddenSurfaces;
 use super::receiver::{BoxBlock, LitReceiver, Vertex};
 use super::resources::{Context, DEEP_WATER, FAR};
 use super::underwater::Underwater;
@@ -24,7 +25,8 @@ pub struct Cast {
 }
 
 impl Cast {
-    /// The first light lays down depth and ambient light, the others are added (eq. 4-20).
+    /// The first light lays down depth and ambient light, the others are added (eq. 4-20). Surfaces below the first are lit by
+    /// their own maps.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -33,6 +35,7 @@ impl Cast {
         lit: &LitReceiver,
         combined_map: &Arc<ImageView>,
         position_map: &Arc<ImageView>,
+        hidden: Option<&HiddenSurfaces>,
         underwater: &Underwater,
     ) -> Result<Self, Error> {
         let load = |clear| if lit.light == 0 && lit.index == 0 { clear } else { Load::Keep };
@@ -41,7 +44,8 @@ impl Cast {
         } else {
             (Blend::Add, DepthTest::EqualReadOnly, [0.0; 3])
         };
-        let pass = Pass::graphics("cast", "4.6", "caustics/cast.vert", "caustics/cast.frag")
+        let fragment = if hidden.is_some() { "caustics/cast-several.frag" } else { "caustics/cast-one.frag" };
+        let mut pass = Pass::graphics("cast", "4.6", "caustics/cast.vert", fragment)
             .vertices::<Vertex>(&lit.receiver.vertices)
             .indices(&lit.receiver.indices)
             .constants::<CastConstants>()
@@ -50,9 +54,12 @@ impl Cast {
             .with("position_map", position_map)
             .with("nearest", context.nearest)
             .color(&underwater.color, load(DEEP_WATER), blend)
-            .depth(&underwater.depth, load(FAR), test)
-            .build(context.shaders)?;
-        Ok(Cast { pass, ambient })
+            .depth(&underwater.depth, load(FAR), test);
+        if let Some(hidden) = hidden {
+            pass = pass.with("hidden_positions", &hidden.positions);
+            pass = pass.with("hidden_light", &hidden.combined);
+        }
+        Ok(Cast { pass: pass.build(context.shaders)?, ambient })
     }
 
     /// Draws the receiver; heights of the position map lie within `height_slack_m` of the surface.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::coverage::Coverage;
 use super::culled_map::CulledMap;
+use super::hidden_surfaces::HiddenSurfaces;
 use super::hit_map::HitMap;
 use super::illumination_volumes::IlluminationVolumes;
 use super::intersections::{Intersections, Scope};
@@ -77,21 +78,18 @@ impl CausticsMap {
         Ok(CausticsMap { drawing: Drawing::Culled(Box::new(culled)), coverage, map })
     }
 
-    /// That of the variant `hit`, which has no samples that a coverage could multiply.
+    /// That of the variant `hit`, which has no samples that a coverage could multiply, and the maps of hidden surfaces.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn hit(
-        context: Context<'_>,
+        scope: Scope<'_>,
         lit: &LitReceiver,
-        volumes: &IlluminationVolumes,
-        water: &WaterSurface,
         position_map: &Arc<ImageView>,
-        shadows: Option<&ShadowMap>,
+        hidden: Option<&HiddenSurfaces>,
     ) -> Result<Self, Error> {
-        let map = context.map("caustics-map", CAUSTICS)?;
-        let scope = Scope { context, volumes, water, position_map: Some(position_map), shadows };
-        let hit = HitMap::new(scope, lit, position_map, &map)?;
+        let map = scope.context.map("caustics-map", CAUSTICS)?;
+        let hit = HitMap::new(scope, lit, [position_map, &map], hidden)?;
         Ok(CausticsMap { drawing: Drawing::Hit(Box::new(hit)), coverage: None, map })
     }
 

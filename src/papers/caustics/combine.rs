@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::illumination_volumes::IlluminationVolumes;
-use super::resources::{Context, LIGHT};
+use super::resources::Context;
 use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
@@ -29,6 +29,8 @@ pub struct Combine {
 }
 
 impl Combine {
+    /// Draws to `map`.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(
@@ -36,8 +38,8 @@ impl Combine {
         volumes: &IlluminationVolumes,
         caustics: &Arc<ImageView>,
         diffuse: &Arc<ImageView>,
+        map: Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let map = context.map("combined-map", LIGHT)?;
         let pass = Pass::graphics("combine", "5.2.2", "common/fullscreen.vert", "caustics/combine.frag")
             .constants::<CombineConstants>()
             .with("caustics_map", caustics)

@@ -45,6 +45,7 @@ impl Parameters {
             }
             None => planes,
         };
+        let layers = f64::from(self.layers);
         let coverage = f64::from(self.coverage).powi(2);
         let water_map = self.water_map.as_ref().map_or(0, |map| size_of_val(map.coefficients())) as f64;
         // Halves of halves, down to four triangles.
@@ -70,10 +71,13 @@ impl Parameters {
                 water_triangles * (culled * 3.0 * NUMBER + ((culled / 32.0).ceil() + 1.0) * NUMBER),
                 NUMBER + LIGHT + NUMBER,
             ),
-            // Heights, their pyramid, and two words of light a texel; where the water's vertices land and how bright, which
-            // triangles straddle, and where.
+            // Heights, their pyramid, and two words of light a texel, of each surface, of which those below the first have maps of
+            // their own and one depth; where the water's vertices land and how bright, which triangles straddle, and where.
             Variant::Hit => (
-                maps + pyramid + 2.0 * NUMBER * texels,
+                maps + pyramid
+                    + layers * 2.0 * NUMBER * texels
+                    + if self.layers > 1 { NUMBER * texels } else { 0.0 }
+                    + (layers - 1.0) * (3.0 * NUMBER + 2.0 * LIGHT) * texels,
                 5.0 * NUMBER * water_vertices + 3.0 * NUMBER * water_triangles,
                 NUMBER + LIGHT + NUMBER,
             ),

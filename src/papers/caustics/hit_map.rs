@@ -14,6 +14,7 @@ use self::empty_sums::empty_sums;
 use self::intersect::intersect;
 use self::land::land;
 use self::straddle::straddle;
+use super::hidden_surfaces::HiddenSurfaces;
 use super::intersections::Scope;
 use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
@@ -50,6 +51,7 @@ host_block! {
 host_block! {
     struct MapConstants {
         map_size: u32,
+        layer: u32,
     }
 }
 
@@ -63,29 +65,33 @@ pub struct HitPass<'a> {
     pub scope: Scope<'a>,
     /// Heights of the receiver.
     pub pyramid: &'a PositionPyramid,
+    /// What the first surface hides.
+    pub hidden: Option<&'a HiddenSurfaces>,
 }
 
 impl HitPass<'_> {
-    /// True where receivers shadow one another.
-    pub fn is_shadowed(&self) -> bool {
-        self.scope.shadows.is_some()
-    }
-
-    /// Begins a pass over the rays or triangles of the refined water.
+    /// Begins a pass over the rays or triangles of the refined water; `shader` goes before the names of its variants.
     pub fn over_rays(&self, name: &'static str, shader: &str) -> PassBuilder {
-        Pass::compute(name, "6.3", shader)
+        let layers = if self.hidden.is_some() { "several" } else { "one" };
+        let pass = Pass::compute(name, "6.3", &format!("{shader}-{layers}.comp"))
             .constants::<HitConstants>()
             .with("heights", &self.pyramid.heights)
             .with("pyramid", &self.pyramid.entries)
-            .with("rays", &self.scope.volumes.rays)
+            .with("rays", &self.scope.volumes.rays);
+        match self.hidden {
+            None => pass,
+            Some(hidden) => pass
+                .with("hidden_positions", &hidden.positions)
+                .offer("ceilings", &hidden.ceilings)
+                .with("nearest", self.scope.context.nearest),
+        }
     }
 
-    /// The pass, reading what shadows the receiver, if anything does.
-    pub fn shadowed(&self, pass: PassBuilder) -> PassBuilder {
-        match self.scope.shadows {
-            None => pass,
-            Some(shadows) => pass.with("shadow_map", &shadows.map).with("nearest", self.scope.context.nearest),
-        }
+    /// The same for a pass that asks for what other receivers shadow, where they do.
+    pub fn shadowed(&self, name: &'static str, shader: &str) -> PassBuilder {
+        let Some(shadows) = self.scope.shadows else { return self.over_rays(name, &format!("{shader}-off")) };
+        let pass = self.over_rays(name, &format!("{shader}-on")).with("shadow_map", &shadows.map);
+        if self.hidden.is_some() { pass } else { pass.with("nearest", self.scope.context.nearest) }
     }
 }
 
@@ -99,7 +105,7 @@ pub struct Landings {
 
 /// Light added up on the map's texels.
 pub struct Sums {
-    /// Two words a texel.
+    /// Two words a texel, surface below surface.
     pub light: Arc<Buffer>,
     /// Number of the triangles that do not land whole, and a list of them.
     pub straddling: Arc<Buffer>,
@@ -124,7 +130,8 @@ pub struct HitMap {
     intersect: Pass,
     land: Pass,
     straddle: Pass,
-    caustics_map: Pass,
+    /// One for each surface.
+    caustics_maps: Vec<Pass>,
     constants: HitConstants,
     unfinished: Arc<Buffer>,
     /// Landing points of the rays of the water's vertices.
@@ -132,20 +139,20 @@ pub struct HitMap {
 }
 
 impl HitMap {
-    /// Draws to `map`, by the heights of `position_map`.
+    /// Draws to `map`, by the heights of `position_map`, and to the maps of hidden surfaces by theirs.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(
         scope: Scope<'_>,
         lit: &LitReceiver,
-        position_map: &Arc<ImageView>,
-        map: &Arc<ImageView>,
+        [position_map, map]: [&Arc<ImageView>; 2],
+        hidden: Option<&HiddenSurfaces>,
     ) -> Result<Self, Error> {
         let Scope { context, water, .. } = scope;
         let shaders = context.shaders;
         let (triangles, vertices) = (u64::from(water.grid.triangle_count()), u64::from(water.grid.vertex_count()));
-        let words = u64::from(sum_words(context)?);
+        let words = u64::from(sum_words(context, 1 + hidden.map_or(0, HiddenSurfaces::count))?);
         let buffer = |name: &str, words: u64, by: &'static str| {
             let desc = BufferDesc::new(context.name(name), 4 * words).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by(by))
@@ -166,19 +173,28 @@ impl HitMap {
                 bytemuck::bytes_of(&[0_u32; 2]),
             )?,
         };
-        let hit = HitPass { scope, pyramid: &position_pyramid };
-        Ok(HitMap {
-            empty_sums: empty_sums(shaders, &sums.light, &sums.straddling)?,
-            intersect: intersect(hit, &landings)?,
-            land: land(hit, &landings, &sums)?,
-            straddle: straddle(hit, &sums)?,
-            caustics_map: Pass::graphics("caustics-map", "6.3", "common/fullscreen.vert", "caustics/hit-map.frag")
+        let hit = HitPass { scope, pyramid: &position_pyramid, hidden };
+        let mut surfaces = vec![(position_map.clone(), map.clone())];
+        if let Some(hidden) = hidden {
+            for layer in 0..hidden.count() {
+                surfaces.push((hidden.positions.image().layer(layer)?, hidden.caustics.image().layer(layer)?));
+            }
+        }
+        let caustics_map = |(position_map, map): &(Arc<ImageView>, Arc<ImageView>)| {
+            Pass::graphics("caustics-map", "6.3", "common/fullscreen.vert", "caustics/hit-map.frag")
                 .constants::<MapConstants>()
                 .with("sums", &sums.light)
                 .with("position_map", position_map)
                 .with("nearest", context.nearest)
                 .color(map, Load::Discard, Blend::Replace)
-                .build(shaders)?,
+                .build(shaders)
+        };
+        Ok(HitMap {
+            empty_sums: empty_sums(shaders, &sums.light, &sums.straddling)?,
+            intersect: intersect(hit, &landings)?,
+            land: land(hit, &landings, &sums)?,
+            straddle: straddle(hit, &sums)?,
+            caustics_maps: surfaces.iter().map(caustics_map).collect::<Result<_, _>>()?,
             constants: constants(scope, lit, position_pyramid.level_count()),
             position_pyramid,
             unfinished: sums.unfinished,
@@ -213,7 +229,7 @@ impl HitMap {
         let constants = HitConstants { absorption_per_m, ..self.constants };
         let HitConstants { map_size, triangles, vertices, .. } = constants;
         self.position_pyramid.record(frame)?;
-        empty_sums::record(&self.empty_sums, frame, map_size)?;
+        empty_sums::record(&self.empty_sums, frame, map_size, self.caustics_maps.len() as u32)?;
         let sharing = straddle::threads(triangles);
         // Two triangles a cell, which are landed together.
         for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles / 2), (&self.straddle, sharing)] {
@@ -221,15 +237,17 @@ impl HitMap {
                 dispatch.constants(&constants).elements(threads);
             })?;
         }
-        frame.graphics(&self.caustics_map, |draw| {
-            draw.constants(&MapConstants { map_size }).vertices(3);
+        (0..).zip(&self.caustics_maps).try_for_each(|(layer, pass)| {
+            frame.graphics(pass, |draw| {
+                draw.constants(&MapConstants { map_size, layer }).vertices(3);
+            })
         })
     }
 }
 
-/// Two words a texel, of an even number of texels, which 32 bits must count.
-fn sum_words(context: Context<'_>) -> Result<u32, Error> {
-    let pairs = u64::from(context.parameters.map_size).pow(2).div_ceil(2);
+/// Two words a texel of each surface, of an even number of texels, which 32 bits must count.
+fn sum_words(context: Context<'_>, surfaces: u32) -> Result<u32, Error> {
+    let pairs = (u64::from(context.parameters.map_size).pow(2) * u64::from(surfaces)).div_ceil(2);
     let (wanted, limit) = (4 * pairs, u64::from(u32::MAX));
     u32::try_from(wanted).map_err(|_| {
         let object = context.name("landed-light");

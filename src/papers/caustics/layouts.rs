@@ -39,10 +39,15 @@ fn the_buffers_hold_what_the_shaders_read() {
         check_block::<PlacedBlock>(shader, "placed");
     }
     // Whole vectors, three of which are a ray.
-    for shader in
-        ["caustics/intersect-off.comp", "caustics/intersect-on.comp", "caustics/land.comp", "caustics/straddle-on.comp"]
-    {
-        assert_eq!(block(shader, "rays").members[0].array_stride_bytes, Some(16), "{shader}");
+    for shader in [
+        "intersect-off-one.comp",
+        "intersect-on-several.comp",
+        "land-one.comp",
+        "land-several.comp",
+        "straddle-on-one.comp",
+    ] {
+        let rays = block(&format!("caustics/{shader}"), "rays");
+        assert_eq!(rays.members[0].array_stride_bytes, Some(16), "{shader}");
     }
     assert_eq!(size_of::<Ray>(), 3 * 16);
     for shader in ["caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag"] {
@@ -58,7 +63,7 @@ fn the_buffers_hold_what_the_shaders_read() {
         }
         check_list::<Node>(&format!("caustics/{shader}-whole.frag"), "nodes");
     }
-    for shader in ["caustics/receiver-map.vert", "caustics/diffuse-map.frag", "caustics/cast.frag"] {
+    for shader in ["caustics/receiver-map.vert", "caustics/diffuse-map.frag", "caustics/cast-one.frag"] {
         check_constants_member::<BoxBlock>(shader, "bounds");
     }
     for shader in ["caustics/water-surface-map.comp", "caustics/view-above-map-whole.frag"] {

@@ -8,14 +8,16 @@ use super::caustics_map::CausticsMap;
 use super::combine::Combine;
 use super::depth_profile::DepthProfile;
 use super::diffuse_map::DiffuseMap;
+use super::hidden_surfaces::HiddenSurfaces;
 use super::illumination_volumes::IlluminationVolumes;
+use super::intersections::Scope;
 use super::parameters::Variant;
 use super::position_diffuse_map::PositionDiffuseMap;
 use super::position_map::PositionMap;
 use super::read_positions::ReadPositions;
 use super::receiver::LitReceiver;
 use super::reference_planes::ReferencePlanes;
-use super::resources::Context;
+use super::resources::{Context, LIGHT};
 use super::shadow_map::ShadowMap;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
@@ -40,12 +42,16 @@ pub enum Slicing {
 pub struct ReceiverPasses {
     /// Position and diffuse map.
     pub maps: ReceiverMaps,
+    /// What the first surface hides from the light's box, by `hit` with several layers.
+    pub hidden: Option<HiddenSurfaces>,
     /// `None` for uniform planes.
     pub smart: Option<SmartSlicing>,
     /// I_c of the receiver's planes.
     pub caustics_map: CausticsMap,
     /// I_c x I_d.
     pub combine: Combine,
+    /// The same of each hidden surface.
+    pub combine_hidden: Vec<Combine>,
     /// The combined map on the receiver.
     pub cast: Cast,
 }
@@ -97,15 +103,31 @@ impl LevelMap {
                 }),
                 _ => None,
             };
+            let hidden = match variant {
+                Variant::Hit => HiddenSurfaces::new(context, lit, maps.position())?,
+                _ => None,
+            };
             let shadows = shadow_maps.get(lit.light);
             let caustics_map = match variant {
                 Variant::Culled => CausticsMap::culled(context, lit, volumes, water, maps.position(), shadows)?,
-                Variant::Hit => CausticsMap::hit(context, lit, volumes, water, maps.position(), shadows)?,
+                Variant::Hit => {
+                    let scope = Scope { context, volumes, water, position_map: Some(maps.position()), shadows };
+                    CausticsMap::hit(scope, lit, maps.position(), hidden.as_ref())?
+                }
                 _ => CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?,
             };
-            let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse())?;
-            let cast = Cast::new(context, lit, &combine.map, maps.position(), underwater)?;
-            Ok(ReceiverPasses { maps, smart, caustics_map, combine, cast })
+            let combined_map = context.map("combined-map", LIGHT)?;
+            let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse(), combined_map)?;
+            let combine_hidden = hidden.as_ref().map_or(Ok(Vec::new()), |hidden| {
+                let of_layer = |layer| {
+                    let (caustics, diffuse) =
+                        (hidden.caustics.image().layer(layer)?, hidden.diffuse.image().layer(layer)?);
+                    Combine::new(context, volumes, &caustics, &diffuse, hidden.combined.image().layer(layer)?)
+                };
+                (0..hidden.count()).map(of_layer).collect::<Result<_, Error>>()
+            })?;
+            let cast = Cast::new(context, lit, &combine.map, maps.position(), hidden.as_ref(), underwater)?;
+            Ok(ReceiverPasses { maps, hidden, smart, caustics_map, combine, combine_hidden, cast })
         };
         let receivers = lit_receivers.iter().map(passes).collect::<Result<_, Error>>()?;
         Ok(LevelMap { slicing, receivers })

@@ -13,6 +13,7 @@ mod axes;
 mod bounding_box;
 mod cast;
 mod caustics_map;
+mod ceilings;
 mod combine;
 mod combine_slices;
 mod coverage;
@@ -21,12 +22,14 @@ mod depth_profile;
 mod diffuse_map;
 mod estimate;
 pub mod experiments;
+mod hidden_surfaces;
 mod hit_map;
 mod illumination_volumes;
 mod intersections;
 #[cfg(test)]
 mod layouts;
 mod level_map;
+mod lit_picture;
 mod multiply;
 mod named_mesh;
 pub mod parameters;
@@ -63,6 +66,7 @@ use glam::{DVec2, DVec3};
 
 use self::bounding_box::Axes;
 use self::culled_map::CELL_FLOATS;
+use self::hidden_surfaces::HiddenSurfaces;
 use self::hit_map::LANDING_FLOATS;
 use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
 use self::intersections::Intersections;
@@ -278,9 +282,9 @@ impl Caustics {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
 
-    /// Landing points of the rays of light `light` on each receiver, in the variant `hit`; the cells that the device
-    /// placed on each, by the variant `culled` with smart slicing.
-    fn tables(&self, light: usize) -> Vec<Target> {
+    /// Landing points of the rays of light `light` on each receiver and the maps of what it hides, in the variant `hit`; the
+    /// cells that the device placed on each, by the variant `culled` with smart slicing.
+    fn landings_and_cells(&self, light: usize) -> Vec<Target> {
         let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Vec::new() };
         let of_light = self.lit_receivers.iter().zip(receivers).filter(|(lit, _)| lit.light == light);
         let named = |(lit, passes): (&LitReceiver, &ReceiverPasses)| {
@@ -290,7 +294,12 @@ impl Caustics {
             };
             Some(Target::table(numbered(name, &[lit.light, lit.index]), table, columns))
         };
-        of_light.filter_map(named).collect()
+        let hidden = |(lit, passes): (&LitReceiver, &ReceiverPasses)| {
+            let maps: Vec<_> = passes.hidden.iter().flat_map(HiddenSurfaces::targets).collect();
+            let target = |(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view).of(holds(name));
+            maps.into_iter().map(target).collect::<Vec<_>>()
+        };
+        of_light.flat_map(|each| named(each).into_iter().chain(hidden(each))).collect()
     }
 
     /// The maps of each receiver under light `light` that `--dump` knows.
@@ -300,7 +309,7 @@ impl Caustics {
             Technique::Volumetric(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
-        let tables = self.tables(light);
+        let tables = self.landings_and_cells(light);
         let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);
         let named = |(lit, maps): (&LitReceiver, [(&str, &Arc<ImageView>); 4])| {
             maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view).of(holds(name)))
@@ -343,6 +352,7 @@ impl Paper for Caustics {
                             diffuse_map.record(frame, lit)?;
                         }
                     }
+                    passes.hidden.as_ref().map_or(Ok(()), |hidden| hidden.record(frame, lit))?;
                 }
                 for (lit, passes) in lit_receivers.iter_mut().zip(receivers) {
                     if let Some(SmartSlicing { read_positions, depth_profile }) = &mut passes.smart {
@@ -376,6 +386,7 @@ impl Paper for Caustics {
                 }
                 for passes in receivers.iter() {
                     passes.combine.record(frame)?;
+                    passes.combine_hidden.iter().try_for_each(|combine| combine.record(frame))?;
                 }
                 for (lit, passes) in lit_receivers.iter().zip(receivers) {
                     passes.cast.record(frame, lit, 0.0)?;
@@ -467,7 +478,7 @@ impl Paper for Caustics {
 
 /// Contents of a texel of a receiver's map, with units.
 fn holds(map: &str) -> &'static str {
-    match map {
+    match map.trim_start_matches("hidden-") {
         "position-map" => "height in metres along the light",
         "diffuse-map" => "diffuse light in red, green, blue, linear, without the light's intensity",
         "caustics-map" => "I_c of eq. 4-18 for light of unit intensity",

@@ -115,6 +115,8 @@ pub struct Parameters {
     pub coverage: u32,
     /// Places that the intensity of eq. 4-18 belongs to: triangles or vertices of the water.
     pub intensity: IntensityRule,
+    /// Surfaces above one another that the variant `hit` lights, 1 to 4.
+    pub layers: u32,
     /// Steps of the variant `culled`.
     pub cull: CullSteps,
     /// The variant `culled` takes the planes of smart slicing, placed on the device.
@@ -162,6 +164,7 @@ impl Default for Parameters {
             smart: SmartParameters { levels: 100, placement: SmartPlacement::Fitted { epsilon_m: None } },
             coverage: 1,
             intensity: IntensityRule::Face,
+            layers: 1,
             cull: CullSteps::EVERY,
             culled_smart: false,
             shadows: false,
@@ -314,6 +317,11 @@ impl Parameters {
                 .help("The intensity of light on a plane: of triangles, as the thesis prints it, or of vertices, interpolated")
                 .section("eq. 4-18")
                 .cost(Cost::Pipelines),
+            Parameter::new("layers", field!(Parameters.layers))
+                .range(Range::from(1.0).to(4.0))
+                .help("Surfaces of a receiver above one another that the variant hit lights: what the light's box shows, and below")
+                .section("6.3")
+                .cost(Cost::Buffers),
             Parameter::new("cull", field!(Parameters.cull))
                 .help("Steps by which the variant culled finds the pairs of triangle and plane to draw; its light is the same by all of them")
                 .section("6.1")

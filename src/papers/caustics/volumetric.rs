@@ -56,7 +56,7 @@ impl Volumetric {
             let slice_images = SliceImages::new(context, lit)?;
             let multiply = Multiply::new(context, volumes, &caustics_map.map, &slice_images.slices)?;
             let combine_slices = CombineSlices::new(context, &slice_images.illumination_map)?;
-            let cast = Cast::new(context, lit, &combine_slices.map, &combine_slices.position, underwater)?;
+            let cast = Cast::new(context, lit, &combine_slices.map, &combine_slices.position, None, underwater)?;
             Ok(ReceiverPasses { slice_images, caustics_map, multiply, combine_slices, cast })
         };
         let receivers = lit_receivers.iter().map(passes).collect::<Result<_, Error>>()?;

@@ -82,6 +82,7 @@ fn unheeded(p: &Parameters, variant: Variant) -> Option<String> {
     let options = [
         ("smart", p.culled_smart, matches!(variant, Culled | LevelMapSmart)),
         ("cull", p.cull != CullSteps::EVERY, variant == Culled),
+        ("layers", p.layers > 1, variant == Hit),
         ("coverage", p.coverage > 1, is_sampled),
         ("intensity", p.intensity != IntensityRule::Face, is_sampled),
         ("planes-within", p.planes_within_m.is_some(), goes_by_distance),

@@ -12,10 +12,10 @@ use super::oracle::{Oracle, waves_surface};
 use super::scene::{FLAT, OBLIQUE, OVERHEAD, POINT, floor, parameters, round_sphere, sunk, tilted_plane};
 use crate::common::gpu_test;
 
-const STEEP: WaveParameters = WaveParameters { count: 12, amplitude_m: 0.21, wavelength_m: 1.2 };
+pub(super) const STEEP: WaveParameters = WaveParameters { count: 12, amplitude_m: 0.21, wavelength_m: 1.2 };
 
 /// The point of the receiver that a texel's middle shows, in the world.
-fn shown(receiver: &ReceiverBox, heights: &[f32], texel: usize) -> DVec3 {
+pub(super) fn shown(receiver: &ReceiverBox, heights: &[f32], texel: usize) -> DVec3 {
     let size = heights.len().isqrt();
     let place = |at: usize, extent: f64| ((at as f64 + 0.5) / size as f64 - 0.5) * extent;
     let (x, z) = (place(texel % size, receiver.width), place(texel / size, receiver.depth));
@@ -23,7 +23,7 @@ fn shown(receiver: &ReceiverBox, heights: &[f32], texel: usize) -> DVec3 {
 }
 
 /// The texels that hold the receiver with all around them, as far as `reach`.
-fn filled(heights: &[f32], reach: usize) -> Vec<usize> {
+pub(super) fn filled(heights: &[f32], reach: usize) -> Vec<usize> {
     let size = heights.len().isqrt();
     let is_filled = |&texel: &usize| {
         let (x, y) = (texel % size, texel / size);
@@ -34,7 +34,7 @@ fn filled(heights: &[f32], reach: usize) -> Vec<usize> {
     (0..heights.len()).filter(is_filled).collect()
 }
 
-fn position_of(light: Light) -> DVec3 {
+pub(super) fn position_of(light: Light) -> DVec3 {
     match light {
         Light::Point { position, .. } => position.as_dvec3(),
         Light::Parallel { .. } => panic!("no point light"),
@@ -84,7 +84,7 @@ fn a_point_light_over_flat_water_lights_by_its_closed_form() {
 }
 
 /// The receiver's triangles in box space.
-fn triangles(receiver: &ReceiverInput, aligned: &ReceiverBox) -> Vec<[DVec3; 3]> {
+pub(super) fn triangles(receiver: &ReceiverInput, aligned: &ReceiverBox) -> Vec<[DVec3; 3]> {
     let mesh = &receiver.mesh;
     let corner = |index: u32| aligned.to_box(mesh.positions[index as usize].as_dvec3());
     mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|i| corner(corners[i]))).collect()

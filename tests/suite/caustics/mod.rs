@@ -5,6 +5,7 @@ mod culled;
 mod drawing;
 mod extremes;
 mod hit;
+mod hit_layers;
 mod hit_shapes;
 mod laws;
 mod level_map;

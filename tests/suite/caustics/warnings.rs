@@ -89,6 +89,7 @@ fn options_that_a_variant_does_not_heed_are_named() {
         let near = Parameters { planes_within_m: Some(2.0), ..plain.clone() };
         let near_and_smart = Parameters { culled_smart: true, ..near.clone() };
         let sampled = Parameters { coverage: 2, intensity: IntensityRule::Vertex, ..plain.clone() };
+        let layered = Parameters { layers: 2, ..plain.clone() };
         let stepwise = Parameters { cull: CullSteps { groups: false, ..CullSteps::EVERY }, ..plain.clone() };
         let shadowed = Parameters { shadows: true, ..plain.clone() };
         use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil, Volumetric};
@@ -103,6 +104,8 @@ fn options_that_a_variant_does_not_heed_are_named() {
             (&near_and_smart, Culled, Some("culled does not heed `planes-within`")),
             (&sampled, Volumetric, None),
             (&sampled, Hit, Some("hit does not heed `coverage`, `intensity`")),
+            (&layered, Hit, None),
+            (&layered, LevelMap, Some("level-map does not heed `layers`")),
             (&stepwise, Culled, None),
             (&stepwise, LevelMap, Some("level-map does not heed `cull`")),
             (&shadowed, Hit, None),
@@ -122,5 +125,5 @@ fn the_preset_of_table_5_1_is_the_thesiss() {
     let p = (preset.setup)().parameters;
     assert_eq!((p.planes, p.map_size, p.water_triangles), (101, 512, 10_000));
     assert!(!p.shadows && !p.fresnel && !p.culled_smart && p.planes_within_m.is_none());
-    assert_eq!((p.coverage, p.intensity), (1, IntensityRule::Face));
+    assert_eq!((p.coverage, p.layers, p.intensity), (1, 1, IntensityRule::Face));
 }

@@ -84,6 +84,7 @@ fn caustics_is_clean_with_its_options() {
             ("culled", "--mesh box --mesh sphere --smart --cull groups --point-light 0,2,0 --light 0.2,-1,0"),
             ("culled", "--mesh box --cull planes-texels --planes-within 1"),
             ("culled", "--mesh box --cull none"),
+            ("hit", "--mesh teapot --layers 3 --shadows --floor --no-mrt --point-light 0.5,1,0"),
             ("level-map-smart", "--mesh box --smart-placement kept --camera below"),
             ("level-map", "--mesh box --water-map volcano --water-map-range 0.1 --water-map-spacing 0.01"),
         ],

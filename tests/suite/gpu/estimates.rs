@@ -71,6 +71,7 @@ fn caustics_is_estimated() {
     is_estimated::<caustics::setup::Setup>(&[
         "size=320x200 map-size=128 planes=7",
         "size=64x48 map-size=64 mesh=bunny mesh=box floor=true light=0,-1,0 light=1,-1,0 water-triangles=40000 planes=3",
+        "size=64x48 map-size=64 layers=3 mesh=box floor=true planes=3",
         "size=64x48 map-size=64 smart=true levels=300 planes=9 water-triangles=4000",
         "size=64x48 map-size=64 coverage=4 shadows=true mesh=box planes=9 water-map=volcano water-map-range=0.1 water-map-spacing=0.01",
     ]);

@@ -73,6 +73,12 @@ fn smart_culling_needs_no_more_memory_from_frame_to_frame() {
 }
 
 #[test]
+fn hidden_surfaces_need_no_more_memory_from_frame_to_frame() {
+    let scene = "mesh=teapot size=32x24 map-size=32 water-triangles=200";
+    is_flat::<caustics::setup::Setup>("hit", &format!("{scene} layers=3 shadows=true"));
+}
+
+#[test]
 fn materials_need_no_more_memory_from_frame_to_frame() {
     let folder = program::folder();
     let mesh = program::file(&folder, "pot.obj", burning_materials::pot());

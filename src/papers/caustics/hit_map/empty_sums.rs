@@ -27,13 +27,13 @@ pub fn empty_sums(shaders: &ShaderLibrary, sums: &Arc<Buffer>, straddling: &Arc<
         .build(shaders)
 }
 
-/// Empties the sums of a square map of that size.
+/// Empties the sums of square maps of that size, one for each surface.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
-pub fn record(pass: &Pass, frame: &mut Frame<'_>, map_size: u32) -> Result<(), Error> {
+pub fn record(pass: &Pass, frame: &mut Frame<'_>, map_size: u32, surfaces: u32) -> Result<(), Error> {
     // Four words together.
-    let pairs = (map_size * map_size).div_ceil(2);
+    let pairs = (map_size * map_size * surfaces).div_ceil(2);
     frame.compute(pass, |dispatch| {
         let threads = pairs.min(EMPTYING);
         dispatch.constants(&EmptyConstants { pairs, threads }).threads(threads, 1, 1);

@@ -8,8 +8,8 @@ use crate::gpu::{Error, Pass};
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn intersect(hit: HitPass<'_>, landings: &Landings) -> Result<Pass, Error> {
-    let shader = if hit.is_shadowed() { "caustics/intersect-on.comp" } else { "caustics/intersect-off.comp" };
-    let pass = hit.over_rays("intersect", shader);
-    let pass = pass.with("landings", &landings.places).with("intensities", &landings.intensities);
-    hit.shadowed(pass).build(hit.scope.context.shaders)
+    hit.shadowed("intersect", "caustics/intersect")
+        .with("landings", &landings.places)
+        .with("intensities", &landings.intensities)
+        .build(hit.scope.context.shaders)
 }

@@ -9,7 +9,7 @@ use crate::gpu::{Error, Pass};
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn land(hit: HitPass<'_>, landings: &Landings, sums: &Sums) -> Result<Pass, Error> {
-    let pass = hit.over_rays("land", "caustics/land.comp");
+    let pass = hit.over_rays("land", "caustics/land");
     sums.of_triangles(pass, hit.scope.water)
         .with("landings", &landings.places)
         .with("intensities", &landings.intensities)

@@ -14,9 +14,8 @@ const IN_TURN: u32 = 16;
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn straddle(hit: HitPass<'_>, sums: &Sums) -> Result<Pass, Error> {
-    let shader = if hit.is_shadowed() { "caustics/straddle-on.comp" } else { "caustics/straddle-off.comp" };
-    let pass = sums.of_triangles(hit.over_rays("straddle", shader), hit.scope.water);
-    hit.shadowed(pass).build(hit.scope.context.shaders)
+    let pass = hit.shadowed("straddle", "caustics/straddle");
+    sums.of_triangles(pass, hit.scope.water).build(hit.scope.context.shaders)
 }
 
 /// Invocations of the pass for so many triangles of the water, however few of them straddle.
