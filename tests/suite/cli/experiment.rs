@@ -196,9 +196,15 @@ fn every_method_is_set_against_photons() {
         number(hit, "correlation") > 0.98 && number(hit, "rms") < 0.7 * number(level_map, "rms"),
         "{hit} {level_map}"
     );
-    for name in ["correlation", "rms", "greatest", "flux", "rms seen"] {
+    for name in ["correlation", "rms", "greatest", "flux", "rms seen", "picture", "picture p99"] {
         assert_eq!(number(level_map, name), number(culled, name), "{name}");
     }
+    // What is seen of it: the picture by light where it lands is nearer to the photons'.
+    assert!(
+        0.0 < number(hit, "picture") && number(hit, "picture") < 0.7 * number(level_map, "picture"),
+        "{hit} {level_map}"
+    );
+    assert!(number(hit, "picture p99") < number(level_map, "picture p99"), "{hit} {level_map}");
     // The smallest of those tried that reaches an error, and nothing for one that none reaches.
     let smallest = record["more"]["smallest"]["rows"].as_array().unwrap();
     let of_hit: Vec<_> = smallest.iter().filter(|row| row["method"] == "hit").collect();

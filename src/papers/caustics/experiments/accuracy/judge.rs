@@ -87,7 +87,7 @@ fn greatest(values: &[f64]) -> f64 {
 }
 
 /// The texels that the receiver fills with all around them: one at an edge has light of a part of it alone.
-fn filled(heights: &[f32]) -> Vec<usize> {
+pub fn filled(heights: &[f32]) -> Vec<usize> {
     let size = heights.len().isqrt();
     let is_held = |x: usize, y: usize| x < size && y < size && heights[y * size + x] > NOWHERE;
     let is_filled = |texel: &usize| {

@@ -3,6 +3,7 @@
 mod cases;
 mod certain;
 mod judge;
+mod pictures;
 mod settings;
 mod smallest;
 mod truth;
@@ -15,6 +16,7 @@ use self::cases::{Case, cases};
 pub use self::certain::MOST_PHOTONS;
 use self::certain::more_photons;
 use self::judge::{Found, Verdict, judge};
+use self::pictures::TruePicture;
 use self::settings::{Setting, all_settings, some_settings};
 use self::truth::{FRAME, Surface, Truth, trace};
 use super::super::named_mesh::NamedMesh;
@@ -42,6 +44,8 @@ struct Row {
     mesh: String,
     setting: Setting,
     verdict: Verdict,
+    /// Luv difference of the picture from that of the true light, mean and 99th percentile.
+    seen: [f64; 2],
     /// Of each half of the truth, for a texel of the greatest map.
     photons: u32,
     frame_ms: f64,
@@ -214,10 +218,10 @@ fn measure_trial(
     let traced = |photons| truths(&setup, &scene, &grid, (greatest, photons), interrupted);
     let mut truths = traced(photons)?;
 
-    // Methods in turn, so that drift meets all alike. The photons count as much as all frames.
+    // Methods in turn, so that drift meets all alike. The photons count as much as all frames, a picture as much as one.
     let mut frame_ms = vec![Vec::new(); papers.len()];
     let mut done = u64::from(rounds) * papers.len() as u64;
-    let expected = 2 * done;
+    let expected = 2 * done + papers.len() as u64;
     (watch.progress)(done, expected);
     for round in 0..rounds {
         for (paper, times) in papers.iter_mut().zip(&mut frame_ms) {
@@ -270,11 +274,28 @@ fn measure_trial(
         truths = traced(photons)?;
         verdicts = judged(&truths)?;
     }
-    let rows = verdicts.into_iter().zip(&trial.settings).zip(&frame_ms).map(|((verdict, setting), times)| {
-        let frame_ms = median(times).unwrap_or(f64::NAN);
-        Row { case: trial.case.name, mesh: trial.mesh.name.clone(), setting: *setting, verdict, photons, frame_ms }
+    // Of the truths' size, with maps of its own.
+    let has_all = |setting: &Setting| setting.map_size == greatest && setting.variant != Variant::Volumetric;
+    let exact = trial.settings.iter().position(has_all);
+    let truth = exact.map(|at| {
+        let heights: Vec<&[f32]> = found[at].iter().map(|map| map.heights.as_slice()).collect();
+        TruePicture::of(machine, &mut papers[at], &heights, &truths)
     });
-    Ok(rows.collect())
+    let truth = truth.transpose()?.flatten();
+    let mut rows = Vec::new();
+    for (index, (verdict, setting)) in verdicts.into_iter().zip(&trial.settings).enumerate() {
+        if watch.interrupted.load(Ordering::Relaxed) {
+            return Err(Error::Interrupted);
+        }
+        let seen = truth.as_ref().map(|truth| truth.difference(machine, &mut papers[index])).transpose()?;
+        let seen = seen.map_or([f64::NAN; 2], |seen| [seen.mean, seen.p99]);
+        done += 1;
+        (watch.progress)(done, expected);
+        let frame_ms = median(&frame_ms[index]).unwrap_or(f64::NAN);
+        let (case, mesh) = (trial.case.name, trial.mesh.name.clone());
+        rows.push(Row { case, mesh, setting: *setting, verdict, seen, photons, frame_ms });
+    }
+    Ok(rows)
 }
 
 /// The smallest rectangle of water over both meshes of it.
@@ -351,9 +372,9 @@ fn volumetric(
 
 fn table(rows: &[Row]) -> ResultTable {
     let row = |row: &Row| {
-        let Row { case, mesh, setting, verdict, photons, frame_ms } = row;
-        let numbers =
-            [verdict.correlation, verdict.rms, verdict.greatest, verdict.flux, verdict.rms_at_truth, verdict.halves];
+        let Row { case, mesh, setting, verdict, seen: [mean, p99], photons, frame_ms } = row;
+        let Verdict { correlation, rms, greatest, flux, rms_at_truth, halves } = *verdict;
+        let numbers = [correlation, rms, greatest, flux, rms_at_truth, *mean, *p99, halves];
         let names = [json!(case), json!(mesh), json!(setting.name()), json!(setting.map_size), setting.planes()];
         let more = [json!(photons), json!(frame_ms)];
         names.into_iter().chain(numbers.map(|number| json!(number))).chain(more).collect::<Vec<Value>>()
@@ -361,7 +382,8 @@ fn table(rows: &[Row]) -> ResultTable {
     ResultTable {
         title: "Accuracy: caustics maps against photons in double precision, over the texels that receivers fill. correlation, \
                 rms (of the truth's mean), greatest texel and flux (of the truth's): at the map's own size; rms seen: at the \
-                greatest size, the map interpolated; halves: correlation of the truth's two halves at the map's size; photons: \
+                greatest size, the map interpolated; picture, its p99: L*u*v* difference (eq. 2-9) from the picture whose light \
+                is the photons', over its pixels with caustics; halves: correlation of the truth's two halves at the map's size; photons: \
                 of each half, for a texel of the greatest map",
         columns: &[
             "case",
@@ -374,6 +396,8 @@ fn table(rows: &[Row]) -> ResultTable {
             "greatest",
             "flux",
             "rms seen",
+            "picture",
+            "picture p99",
             "halves",
             "photons",
             "frame ms",

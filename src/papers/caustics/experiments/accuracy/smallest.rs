@@ -46,7 +46,7 @@ mod tests {
     fn row(variant: Variant, map_size: u32, plane_count: u32, rms_at_truth: f64) -> Row {
         let setting = Setting { variant, map_size, plane_count, coverage: 1, intensity: IntensityRule::Face };
         let verdict = Verdict { correlation: 1.0, rms: 0.0, greatest: 1.0, flux: 1.0, rms_at_truth, halves: 1.0 };
-        Row { case: "as set", mesh: "sphere".to_owned(), setting, verdict, photons: 100, frame_ms: 2.0 }
+        Row { case: "as set", mesh: "sphere".to_owned(), setting, verdict, seen: [0.0; 2], photons: 100, frame_ms: 2.0 }
     }
 
     #[test]
