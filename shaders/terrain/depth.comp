@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
+#include "terrain/levels.glsl"
 #include "terrain/base-{BASE}.glsl"
 #include "terrain/interpolation.glsl"
 #include "terrain/leaf-{LOD}.glsl"

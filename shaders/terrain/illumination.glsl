@@ -3,6 +3,8 @@
 
 // Before this file stand light.glsl and one for what is draped over the land.
 
+#include "terrain/base-normal.glsl"
+
 layout(set = 0, binding = 1) uniform texture2D depth;
 layout(set = 0, binding = 2) uniform texture2D normal;
 layout(set = 0, binding = 4) uniform texture2D shadow; // a single texel where none are thrown
@@ -25,10 +27,10 @@ vec3 sky(vec3 direction) {
     return mix(light.haze_color, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
 }
 
-vec3 albedo_at(int surface, vec3 facing, float height) {
+vec3 albedo_at(int surface, float upright, float height) {
     vec3 tint = surface == 1 ? BASE_TINT : tint_at(height);
     // Nothing grows on a cliff.
-    return mix(ROCK, tint, smoothstep(0.45, 0.75, facing.y));
+    return mix(ROCK, tint, smoothstep(0.45, 0.75, upright));
 }
 
 vec4 color_of(ivec2 pixel) {
@@ -40,11 +42,12 @@ vec4 color_of(ivec2 pixel) {
     vec3 color = sky(direction);
     if (surface != 0) {
         float height = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
-        vec3 albedo = albedo_at(surface, facing.xyz, height);
+        vec3 up = up_at(light.eye + hit.x * direction, facing.w);
+        vec3 albedo = albedo_at(surface, dot(facing.xyz, up), height);
         if (surface == 2) {
             albedo = under_drape(albedo, direction, hit, facing);
         }
-        color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));
+        color = lit_color(albedo, facing.xyz, up, sunlit, hit.x * length(direction));
     }
     return vec4(encoded(color), 1.0);
 }

@@ -31,10 +31,10 @@ vec3 view_direction(vec2 pixel) {
     return light.corner_direction + pixel.x * light.right_step + pixel.y * light.down_step;
 }
 
-// The light of a surface of that colour as seen from a distance, through the haze.
-vec3 lit_color(vec3 albedo, vec3 facing, float sunlit, float distance_m) {
+// The light of a surface of that colour, where `up` is the base's normal, as seen from a distance, through the haze.
+vec3 lit_color(vec3 albedo, vec3 facing, vec3 up, float sunlit, float distance_m) {
     float lit = sunlit * max(dot(facing, light.to_sun), 0.0);
-    float open = light.sky_strength * (0.5 + 0.5 * facing.y);
+    float open = light.sky_strength * (0.5 + 0.5 * dot(facing, up));
     vec3 seen = albedo * (vec3(2.0, 1.88, 1.7) * lit + vec3(0.55, 0.68, 0.9) * open);
     return mix(light.haze_color, seen, exp(-light.extinction_per_m * distance_m));
 }

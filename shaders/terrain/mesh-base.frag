@@ -7,6 +7,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
+#include "terrain/levels.glsl"
 #include "terrain/base-{BASE}.glsl"
 
 layout(location = 0) out vec4 depth;

@@ -3,6 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
+#include "terrain/levels.glsl"
 #include "terrain/mesh.glsl"
 #include "terrain/geodesy.glsl"
 

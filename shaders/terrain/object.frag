@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/light.glsl"
+#include "terrain/base-normal.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D shadow; // a single texel where none are thrown
 
@@ -24,5 +25,7 @@ void main() {
     vec3 face = cross(dFdx(place), dFdy(place));
     float side = dot(face, direction) > 0.0 ? -1.0 : 1.0;
     normal = side * dot(normal, face) < 0.0 ? -normal : normal;
-    picture = vec4(encoded(lit_color(PAINT, normal, sunlit, length(direction) / gl_FragCoord.w)), 1.0);
+    // Objects are low over the base beside its radius.
+    vec3 up = up_at(light.eye + place, 0.0);
+    picture = vec4(encoded(lit_color(PAINT, normal, up, sunlit, length(direction) / gl_FragCoord.w)), 1.0);
 }

@@ -48,8 +48,6 @@ layout(set = 0, binding = 0, std140) uniform Terrain {
 
 #include "terrain/kinds.glsl"
 
-layout(set = 0, binding = 1) uniform utexture2DArray levels;
-
 // Members of the block that every read of the map needs, read once: a loop fetches a member of a block in every iteration.
 struct Map {
     ivec2 last; // column and row
@@ -99,23 +97,6 @@ struct Clip {
 
 float surface_code(int surface, int shift, int segments) {
     return float(surface + 8 * shift + 4096 * min(segments, 4095)) + 256.0 * float(terrain.map_index);
-}
-
-// The value of a texel `shift` levels above the data. Layer 0 holds the data, `layer` the coarser levels, each beginning at
-// its padded width.
-float value_in(int layer, int shift, ivec2 texel) {
-    int here = shift == 0 ? 0 : layer;
-    ivec2 origin = shift == 0 ? ivec2(0) : map.spread >> shift;
-    uint bits = texelFetch(levels, ivec3(origin + texel, here), 0).x;
-    return map.is_float ? uintBitsToFloat(bits) : float(int(bits));
-}
-
-float highest_at(int shift, ivec2 texel) {
-    return value_in(1, shift, texel);
-}
-
-float lowest_at(int shift, ivec2 texel) {
-    return value_in(2, shift, texel);
 }
 
 ivec2 last_texel(int shift) {

@@ -10,12 +10,15 @@ use crate::{content, file};
 /// Endings of the files that a raster may be read with.
 const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
 
-/// SHA-256 of a file in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
+/// SHA-256 of a file, or of all of a folder, in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
 /// projection of a raster, world file of a picture, samples of a volume), that of all their digests in order.
 ///
 /// # Errors
 /// A file cannot be read.
 pub fn source_sha256(path: &Path) -> io::Result<String> {
+    if path.is_dir() {
+        return content::folder_sha256(path);
+    }
     let own = content::file_sha256(path)?;
     let companions = companions(path);
     if companions.is_empty() {

@@ -4,7 +4,10 @@ use super::object_source::{ObjectSource, Stand};
 use super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::stress::{Amount, Axis, scaled, side};
-use crate::scene::{HeightMap, HeightMapSource, MeshSource};
+use crate::scene::{HeightMapSource, MeshSource};
+
+/// Samples a side of the largest map of a sweep: the images of many devices hold no more.
+const MOST_SIDE: u64 = 16_384;
 
 /// The default first.
 pub fn all() -> Vec<Axis<Setup>> {
@@ -13,7 +16,7 @@ pub fn all() -> Vec<Axis<Setup>> {
             .help("Samples of the synthetic volcano")
             .unit("samples")
             .sets("resolution")
-            .most((*HeightMap::SIDE.end() as u64).pow(2))
+            .most(MOST_SIDE.pow(2))
             .amount(Amount::Rounded(|setup| f64::from(setup.resolution).powi(2))),
         Axis::new("screen", 100 * 75, |setup: &mut Setup, pixels| {
             let parameters = &mut setup.parameters;

@@ -14,7 +14,7 @@ use super::nearest::{Nearest, Search};
 use super::normal::normal_of;
 use super::parameters::{Normals, Parameters};
 use super::placement::Rays;
-use super::pyramid::Texel;
+use super::pyramid::{Cover, Texel};
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{Inputs, Scene};
 use super::solid::Solid;
@@ -52,7 +52,7 @@ impl Collider {
     /// Of at least one map; of the parameters the base, its level and the interpolation matter. Objects are no ground.
     pub fn new(parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
         let scene = Scene::new(parameters, inputs);
-        let maps = scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation)).collect();
+        let maps = scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation, Cover::Nodes)).collect();
         let parameters = Parameters { normals: Normals::Surface, ..parameters.clone() };
         Collider { parameters, scene, maps }
     }

@@ -19,24 +19,29 @@ impl Parameters {
     /// Device memory, passes and shader invocations of a frame; `map` names the parameter that sets the maps' sizes.
     pub(super) fn estimate(&self, variant: Variant, inputs: &Inputs<'_>, map: &'static str) -> Estimate {
         let pixels = self.pixels() as f64;
-        let is_host = variant == Variant::Cpu;
+        let is_host = variant.is_host();
         let is_mesh = variant.is_rasterised();
         let shades_objects = self.shadows && !inputs.objects.is_empty();
         let bounds = match self.interpolation {
             Interpolation::Bilinear => 1.0,
             Interpolation::Bicubic => 2.0,
         };
-        let (mut levels, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0);
+        let (mut levels, mut pools, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for input in inputs.maps {
             let samples = &input.map;
             let shape = Shape::new(samples.width(), samples.height());
             let (width, height) = shape.extent();
             let sample = if matches!(samples.samples(), Samples::Float(_)) { NUMBER } else { 0.5 * NUMBER };
-            levels += f64::from(width) * f64::from(height) * sample * (1.0 + bounds);
+            let whole = f64::from(width) * f64::from(height) * sample * (1.0 + bounds);
+            if variant == Variant::TiledCompute {
+                pools += whole.min(self.tile_bytes() as f64 / inputs.maps.len() as f64);
+            } else {
+                levels += whole;
+            }
             let side = f64::from(shape.width.max(shape.height));
             // Level by level, or cell by cell.
             steps += match variant {
-                Variant::DdaCompute | Variant::DdaFragment => side,
+                Variant::DdaCompute | Variant::DdaFragment | Variant::DdaCpu => side,
                 _ => 4.0 * side.log2() + if self.lod == Lod::Exact { 8.0 } else { 0.0 },
             };
             if variant == Variant::MeshLod {
@@ -80,6 +85,7 @@ impl Parameters {
             buffers: Vec::new(),
             bytes: vec![
                 (map, if on_device { levels } else { 0.0 } + indices),
+                ("tile-memory", pools),
                 ("drape", NUMBER * if on_device { drape } else { 0.0 }),
                 ("size", (of_pixel + light + objects + lit_objects + occlusion) * pixels),
                 ("object", mesh_bytes as f64 + tree),

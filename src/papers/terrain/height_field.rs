@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{IVec2, Vec2};
 
 use super::parameters::Interpolation;
-use super::pyramid::{Bound, Pyramid, Shape, Texel};
+use super::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
 use crate::scene::{HeightMap, Samples};
 
 /// The samples of a map and the levels above them.
@@ -14,6 +14,7 @@ pub struct HeightField {
     map: Arc<HeightMap>,
     levels: Levels,
     interpolation: Interpolation,
+    cover: Cover,
 }
 
 #[derive(Debug, Clone)]
@@ -30,15 +31,17 @@ struct Bounds<T> {
 }
 
 impl<T: Texel> Bounds<T> {
-    fn new(map: &HeightMap, interpolation: Interpolation) -> Self {
+    fn new(map: &HeightMap, interpolation: Interpolation, cover: Cover) -> Self {
         let shape = Shape::new(map.width(), map.height());
-        let build = |bound| Pyramid::build(shape, T::samples_of(map), bound);
+        let build = |bound| Pyramid::covering(shape, T::samples_of(map), (bound, cover));
         let lowest = (interpolation == Interpolation::Bicubic).then(|| build(Bound::Lowest));
         Bounds { highest: build(Bound::Highest), lowest }
     }
 
-    fn field<'a>(&'a self, map: &'a HeightMap, interpolation: Interpolation) -> Field<'a, T> {
-        Field { data: T::samples_of(map), highest: &self.highest, lowest: self.lowest.as_ref(), interpolation }
+    fn field<'a>(&'a self, of: &'a HeightField) -> Field<'a, T> {
+        let HeightField { map, interpolation, cover, .. } = of;
+        let (data, lowest) = (T::samples_of(map), self.lowest.as_ref());
+        Field { data, highest: &self.highest, lowest, interpolation: *interpolation, cover: *cover }
     }
 }
 
@@ -51,18 +54,18 @@ pub trait FieldWork {
 
 impl HeightField {
     /// Builds the levels on all cores.
-    pub fn new(map: &Arc<HeightMap>, interpolation: Interpolation) -> Self {
+    pub fn new(map: &Arc<HeightMap>, interpolation: Interpolation, cover: Cover) -> Self {
         let levels = match map.samples() {
-            Samples::Steps { .. } => Levels::Steps(Bounds::new(map, interpolation)),
-            Samples::Float(_) => Levels::Float(Bounds::new(map, interpolation)),
+            Samples::Steps { .. } => Levels::Steps(Bounds::new(map, interpolation, cover)),
+            Samples::Float(_) => Levels::Float(Bounds::new(map, interpolation, cover)),
         };
-        HeightField { map: map.clone(), levels, interpolation }
+        HeightField { map: map.clone(), levels, interpolation, cover }
     }
 
     pub fn with<W: FieldWork>(&self, work: W) -> W::Output {
         match &self.levels {
-            Levels::Steps(bounds) => work.run(bounds.field(&self.map, self.interpolation)),
-            Levels::Float(bounds) => work.run(bounds.field(&self.map, self.interpolation)),
+            Levels::Steps(bounds) => work.run(bounds.field(self)),
+            Levels::Float(bounds) => work.run(bounds.field(self)),
         }
     }
 }
@@ -75,6 +78,8 @@ pub struct Field<'a, T> {
     lowest: Option<&'a Pyramid<T>>,
     /// The surface between the samples.
     pub interpolation: Interpolation,
+    /// The nodes that texels of the levels bound.
+    pub cover: Cover,
 }
 
 /// The cell of a level around a place: its north-west corner, and where the place lies in it, 0 to 1.
@@ -97,16 +102,20 @@ impl<T: Texel> Field<'_, T> {
         IVec2::new((shape.width as i32 - 1) >> shift, (shape.height as i32 - 1) >> shift)
     }
 
+    /// The highest or lowest values `shift` levels above the data, row by row; the level exists.
+    pub fn level(&self, bound: Bound, shift: u32) -> &[T] {
+        match bound {
+            _ if shift == 0 => self.data,
+            Bound::Highest => self.highest.level(shift).unwrap_or_default(),
+            Bound::Lowest => self.lowest.and_then(|lowest| lowest.level(shift)).unwrap_or_default(),
+        }
+    }
+
     /// The highest or lowest value of what a texel `shift` levels above the data covers; the texel exists.
     pub fn value(&self, bound: Bound, shift: i32, texel: IVec2) -> f32 {
-        let columns = ((self.shape().width as i32 - 1) >> shift) + 1;
-        let index = (texel.y * columns + texel.x) as usize;
-        let level = match bound {
-            _ if shift == 0 => self.data,
-            Bound::Highest => self.highest.level(shift as u32).unwrap_or_default(),
-            Bound::Lowest => self.lowest.and_then(|lowest| lowest.level(shift as u32)).unwrap_or_default(),
-        };
-        level.get(index).map_or(0.0, |value| value.to_f32())
+        let columns = ((self.shape().width as usize - 1) >> shift) + 1;
+        let index = texel.y as usize * columns + texel.x as usize;
+        self.level(bound, shift as u32).get(index).map_or(0.0, |value| value.to_f32())
     }
 
     /// The cell around a place in nodes. A coarser level's texel stands in the middle of the nodes that it covers.

@@ -15,7 +15,7 @@ use super::host::HostPass;
 use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use super::stage::{Build, PixelPass};
-use super::tints::tinted;
+use super::tints::{tinted, up_at};
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 
@@ -114,7 +114,9 @@ pub fn color_of(
         haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
     } else {
         let height = (facing.w - light.lowest_m) / (light.highest_m - light.lowest_m).max(1e-6);
-        let albedo = albedo_at(hit.surface, normal, height);
+        let up = up_at(light, light.eye + hit.depth_m * direction, facing.w);
+        let upright = normal.dot(up);
+        let albedo = albedo_at(hit.surface, upright, height);
         let draped = drape.filter(|_| hit.surface == Surface::Terrain).and_then(|drape| match drape.draping() {
             Draping::WholeMap | Draping::Placed { .. } if hit.map > 0 => None,
             Draping::WholeMap | Draping::Placed { .. } => {
@@ -124,7 +126,7 @@ pub fn color_of(
         });
         let albedo = draped.unwrap_or(albedo);
         let lit = sunlit * normal.dot(light.to_sun).max(0.0);
-        let open = light.sky_strength * (0.5 + 0.5 * normal.y);
+        let open = light.sky_strength * (0.5 + 0.5 * upright);
         let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);
         haze.lerp(seen, (-light.extinction_per_m * hit.depth_m * direction.length()).exp())
     };
@@ -132,8 +134,8 @@ pub fn color_of(
     [r, g, b, 255]
 }
 
-/// Of the ground at a height of 0 to 1 from the lowest to the highest.
-fn albedo_at(surface: Surface, normal: Vec3, height: f32) -> Vec3 {
+/// Of the ground at a height of 0 to 1 from the lowest to the highest; `upright` is the cosine of its angle with the base.
+fn albedo_at(surface: Surface, upright: f32, height: f32) -> Vec3 {
     let place = height.clamp(0.0, 1.0) * 5.0;
     let below = (place as usize).min(4);
     let tint = match surface {
@@ -141,7 +143,7 @@ fn albedo_at(surface: Surface, normal: Vec3, height: f32) -> Vec3 {
         _ => TINTS[below].lerp(TINTS[below + 1], place - below as f32),
     };
     // Nothing grows on a cliff.
-    let flat = ((normal.y - 0.45) / 0.3).clamp(0.0, 1.0);
+    let flat = ((upright - 0.45) / 0.3).clamp(0.0, 1.0);
     ROCK.lerp(tint, flat * flat * (3.0 - 2.0 * flat))
 }
 

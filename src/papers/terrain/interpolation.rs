@@ -5,7 +5,7 @@ use std::ops::{Add, Div, Sub};
 
 use glam::{DVec2, DVec3, IVec2, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 
-use super::height_field::{Cell, Field};
+use super::height_field::{Cell, Field, shift_for};
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Texel};
 
@@ -84,17 +84,7 @@ impl<T: Texel> Field<'_, T> {
         let last = (high.min(end + 4.0).floor().as_ivec2() + after).clamp(IVec2::ZERO, last_node);
         let most = ((last >> shift) - (first >> shift)).max_element().max(1) as u32;
         let level = (shift + (2 * most - 1).ilog2() as i32).min(self.shape().top as i32);
-        let (a, b) = (first >> level, last >> level);
-        let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
-        let highest = four.map(|texel| self.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
-        Some(match self.interpolation {
-            Interpolation::Bilinear => highest,
-            Interpolation::Bicubic => {
-                let lowest =
-                    four.map(|texel| self.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
-                highest + OVERSHOOT as f32 * (highest - lowest)
-            }
-        })
+        Some(self.highest_of(level, first >> level, last >> level))
     }
 
     /// The ray parameter, 0 to 1 from `near` to `far` in nodes, at which a line as short as a texel of a level first meets the
@@ -121,12 +111,57 @@ impl<T: Texel> Field<'_, T> {
             let inside = |place: Vec3| (place.xy() - cell.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE);
             let first = inside(from);
             let (from, direction) = (first.extend(from.z), (inside(from + moved) - first).extend(moved.z));
-            let t = match self.interpolation {
-                Interpolation::Bilinear => touch_bilinear(self.corners(shift, cell), from, direction),
-                Interpolation::Bicubic => touch_bicubic(self.around(shift, cell), from, direction, tolerance / size),
-            };
-            t.map(|t| ends[0] + t * length)
+            self.touch(shift, cell, from, direction, tolerance / size).map(|t| ends[0] + t * length)
         })
+    }
+
+    /// The fraction of a line inside a cell of a level, `from` counted from its corner, at which it first meets the surface.
+    pub fn touch(&self, shift: i32, cell: IVec2, from: Vec3, direction: Vec3, tolerance: f32) -> Option<f32> {
+        match self.interpolation {
+            Interpolation::Bilinear => touch_bilinear(self.corners(shift, cell), from, direction),
+            Interpolation::Bicubic => touch_bicubic(self.around(shift, cell), from, direction, tolerance),
+        }
+    }
+
+    /// A height above the surface over a block of cells, where levels are [`Cover::Cells`].
+    ///
+    /// [`Cover::Cells`]: super::pyramid::Cover::Cells
+    pub fn highest_over(&self, level: i32, block: IVec2) -> f32 {
+        let highest = self.value(Bound::Highest, level, block);
+        match self.interpolation {
+            Interpolation::Bilinear => highest,
+            Interpolation::Bicubic => highest + OVERSHOOT as f32 * (highest - self.value(Bound::Lowest, level, block)),
+        }
+    }
+
+    /// A height above the surface between two places, by texels that bound whole cells; none where no map is.
+    pub fn highest_between(&self, low: Vec2, high: Vec2, shift: i32) -> Option<f32> {
+        let end = self.last(0).as_vec2();
+        if high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y {
+            return None;
+        }
+        let last_cell = (self.last(0) - 1).max(IVec2::ZERO);
+        let cell = |place: Vec2| place.clamp(Vec2::ZERO, end).floor().as_ivec2().min(last_cell);
+        let (first, last) = (cell(low), cell(high));
+        let least = shift.max(1);
+        let touched = ((last >> least) - (first >> least)).max_element();
+        let top = self.shape().top;
+        let level = (least + shift_for(touched as f32, top)).min(top as i32).max(1);
+        Some(self.highest_of(level, first >> level, last >> level))
+    }
+
+    /// A height that no interpolated one exceeds where nothing but these four texels of a level and those between is read.
+    fn highest_of(&self, level: i32, a: IVec2, b: IVec2) -> f32 {
+        let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
+        let highest = four.map(|texel| self.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
+        match self.interpolation {
+            Interpolation::Bilinear => highest,
+            Interpolation::Bicubic => {
+                let lowest =
+                    four.map(|texel| self.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
+                highest + OVERSHOOT as f32 * (highest - lowest)
+            }
+        }
     }
 
     /// Four corner values: north-west, north-east, south-west, south-east.

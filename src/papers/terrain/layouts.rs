@@ -12,6 +12,9 @@ fn the_buffers_hold_what_the_shaders_read() {
             check_block::<TerrainBlock>(&format!("terrain/{program}.{stage}"), "terrain");
         }
     }
+    for program in ["depth-tiled-plane-bilinear-pixel", "shadow-tiled-curved-bicubic", "normal-tiled-bilinear"] {
+        check_block::<TerrainBlock>(&format!("terrain/{program}.comp"), "terrain");
+    }
     for shader in ["mesh.vert", "mesh.frag", "mesh-base-plane.frag", "mesh-base-curved.frag"] {
         check_block::<TerrainBlock>(&format!("terrain/{shader}"), "terrain");
     }

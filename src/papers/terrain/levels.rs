@@ -1,4 +1,4 @@
-//! A map on the device: its data and its pyramid in the layers of one image.
+//! A map on the device: its data and its pyramid in the layers of one image, or in tiles of which it holds some.
 //!
 //! Texels are unsigned integers: R16_UINT for 16-bit steps, R32_UINT with the bits of floats. Vulkan promises sampling and
 //! rendering for both; for R16_UNORM it promises neither.
@@ -7,9 +7,12 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::parameters::Interpolation;
 use super::pyramid::{Bound, Cover, Shape};
+use super::tiles::Tiles;
+use crate::gpu::bindings::Resource;
 use crate::gpu::transfer::{copy_rectangle, upload_rows};
-use crate::gpu::{Blend, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
+use crate::gpu::{Blend, Device, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
 use crate::host_block;
 use crate::scene::{HeightMap, Samples};
 
@@ -35,6 +38,8 @@ pub struct Levels {
     pub shape: Shape,
     /// Texels are the bits of floats, not 16-bit steps.
     pub is_float: bool,
+    /// The tiles, where the device does not hold all.
+    pub tiles: Option<Tiles>,
 }
 
 impl Levels {
@@ -69,11 +74,35 @@ impl Levels {
                 Samples::Float(values) => copy_samples(&values[first..], rows),
             }
         })?;
-        let levels = Levels { view: image.view()?, shape, is_float };
+        let levels = Levels { view: image.view()?, shape, is_float, tiles: None };
         for (layer, &bound) in (1..).zip(bounds) {
             levels.build(shaders, &image, layer, (bound, cover))?;
         }
         Ok(levels)
+    }
+
+    /// Those of which the device holds tiles that rays asked for, in at most so many bytes.
+    ///
+    /// # Errors
+    /// As [`Tiles::new`].
+    pub fn in_tiles(
+        device: &Arc<Device>,
+        label: &str,
+        map: &Arc<HeightMap>,
+        pool: (Interpolation, u64),
+    ) -> Result<Self, Error> {
+        let tiles = Tiles::new(device, label, map, pool)?;
+        let is_float = matches!(map.samples(), Samples::Float(_));
+        let shape = Shape::new(map.width(), map.height());
+        Ok(Levels { view: tiles.view.clone(), shape, is_float, tiles: Some(tiles) })
+    }
+
+    /// All that passes read of them, by the shaders' names.
+    pub fn resources(&self) -> Vec<(&'static str, Resource)> {
+        match &self.tiles {
+            None => vec![("levels", (&self.view).into())],
+            Some(tiles) => tiles.resources().into(),
+        }
     }
 
     /// One pass a level: drawn from the level below it, then copied to its place.

@@ -35,10 +35,12 @@ mod normal;
 mod object_depth;
 mod object_hits;
 mod object_occlusion;
+mod object_passes;
 mod object_shadow;
 mod object_source;
 mod objects;
 mod occlusion;
+mod page_table;
 mod parameters;
 mod placement;
 mod pyramid;
@@ -54,8 +56,10 @@ mod shadow;
 mod show;
 mod solid;
 mod stage;
+mod tiles;
 mod tints;
 mod view;
+mod walk;
 
 use std::sync::Arc;
 
@@ -64,7 +68,7 @@ pub use self::collision::{Collider, Contact};
 use self::depth::{HostDepth, depth};
 pub use self::drape::{Drape, Draping};
 pub use self::drape_source::DrapeSource;
-use self::geometric_transformation::{GeometricTransformation, SceneView};
+use self::geometric_transformation::GeometricTransformation;
 pub use self::ground::{Ground, Origin};
 use self::height_field::HeightField;
 pub use self::hit::{Hit, NO_DEPTH, Surface};
@@ -74,12 +78,8 @@ pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
 use self::mesh_lod::MeshLod;
 use self::normal::{HostNormal, normal};
-use self::object_depth::ObjectDepth;
-use self::object_hits::ObjectHits;
-use self::object_occlusion::object_occlusion;
-use self::object_shadow::object_shadow;
+use self::object_passes::ObjectPasses;
 pub use self::object_source::{ObjectSource, Stand};
-use self::objects::{ObjectMesh, Objects};
 use self::occlusion::{HostOcclusion, occlusion};
 pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
@@ -91,8 +91,10 @@ pub use self::selection::{Patch, Selection, Viewer};
 use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
 use self::stage::{Build, PixelPass, Stage, Traversal};
+pub use self::tiles::TileCounts;
+use self::tiles::Tiles;
 use crate::gpu::transfer::read_image;
-use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 use crate::scene::{Camera, HeightMap, Suspect};
@@ -149,22 +151,6 @@ struct Shading {
     illumination: PixelPass,
 }
 
-/// Polygon objects in the picture of the terrain.
-struct ObjectPasses {
-    meshes: Vec<ObjectMesh>,
-    depth: ObjectDepth,
-    /// None where nothing throws shadows.
-    shadow: Option<ObjectShadows>,
-    objects: Objects,
-}
-
-/// Hits of objects, and the sun's light that reaches them past the maps and past each other.
-struct ObjectShadows {
-    hits: ObjectHits,
-    shadow: PixelPass,
-    occlusion: PixelPass,
-}
-
 impl Terrain {
     /// Makes every resource and pass, and the maps' pyramids; `label` goes before the names of the resources.
     ///
@@ -189,7 +175,8 @@ impl Terrain {
         let (stage, traversal) = match variant {
             Variant::GpuCompute => (Stage::Compute, Traversal::Halving),
             Variant::DdaCompute => (Stage::Compute, Traversal::Cells),
-            Variant::DdaFragment => (Stage::Fragment, Traversal::Cells),
+            Variant::DdaFragment | Variant::DdaCpu => (Stage::Fragment, Traversal::Cells),
+            Variant::TiledCompute => (Stage::Compute, Traversal::Tiles),
             Variant::Cpu | Variant::GpuFragment | Variant::Mesh | Variant::MeshLod => {
                 (Stage::Fragment, Traversal::Halving)
             }
@@ -201,11 +188,15 @@ impl Terrain {
         let tree = casts.then(|| TriangleTree::over(inputs.objects));
         let device_tree = tree.as_ref().map(|tree| DeviceTree::new(shaders.device(), label, tree)).transpose()?;
         let (device_scene, technique) = match variant {
-            Variant::Cpu => {
+            Variant::Cpu | Variant::DdaCpu => {
                 let host = HostPasses::new(&build, &scene, inputs.drape, tree)?;
                 (casts.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
             }
-            Variant::GpuCompute | Variant::GpuFragment | Variant::DdaCompute | Variant::DdaFragment => {
+            Variant::GpuCompute
+            | Variant::GpuFragment
+            | Variant::DdaCompute
+            | Variant::DdaFragment
+            | Variant::TiledCompute => {
                 let maps = on_device(inputs.drape)?;
                 let depth = depth(&build, &maps)?;
                 let shading = Shading::new(&build, &maps, &depth.target, device_tree.as_ref())?;
@@ -271,6 +262,19 @@ impl Terrain {
         }
     }
 
+    /// The tiles of all maps; of [`Variant::TiledCompute`].
+    pub fn tiles(&self) -> Option<TileCounts> {
+        let maps = self.device_scene.iter().flat_map(|scene| &scene.maps);
+        maps.filter_map(|map| map.levels.tiles.as_ref()).map(Tiles::counts).reduce(TileCounts::and)
+    }
+
+    /// Copies to the device what the frames since the last time asked for; true where that was nothing.
+    fn exchange_tiles(&mut self) -> Result<bool, Error> {
+        let maps = self.device_scene.iter_mut().flat_map(|scene| &mut scene.maps);
+        let tiles = maps.filter_map(|map| map.levels.tiles.as_mut());
+        tiles.map(Tiles::exchange).try_fold(true, |all, one| Ok(all & one?))
+    }
+
     fn record_passes(&mut self, frame: &mut Frame<'_>, shows: bool) -> Result<(), Error> {
         let Terrain { geometric_transformation, scene, parameters, device_scene, .. } = self;
         let view = geometric_transformation.record(frame, scene, parameters, device_scene.as_ref())?;
@@ -325,9 +329,10 @@ impl HostPasses {
     /// `tree` has the objects that throw shadows.
     fn new(build: &Build<'_>, scene: &Scene, drape: Option<&Drape>, tree: Option<TriangleTree>) -> Result<Self, Error> {
         let parameters = build.parameters;
+        let cover = build.cover();
         Ok(HostPasses {
             show: Show::new(build)?,
-            maps: scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation)).collect(),
+            maps: scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation, cover)).collect(),
             depth: HostDepth::new(parameters),
             normal: HostNormal::new(parameters),
             shadow: parameters.shadows.then(|| HostShadow::new(parameters)),
@@ -380,61 +385,16 @@ impl Shading {
     }
 }
 
-impl ObjectPasses {
-    /// `casters` are the maps and the objects that throw shadows.
-    fn new(
-        build: &Build<'_>,
-        meshes: &[crate::scene::Mesh],
-        (depth, picture): (&Arc<ImageView>, &Arc<ImageView>),
-        casters: Option<(&DeviceScene, &DeviceTree)>,
-    ) -> Result<Self, Error> {
-        let depth = ObjectDepth::new(build, depth)?;
-        let meshes = meshes.iter().map(|mesh| ObjectMesh::new(build, mesh)).collect::<Result<Vec<_>, _>>()?;
-        let shadow = casters.map(|(scene, tree)| -> Result<_, Error> {
-            let hits = ObjectHits::new(build, &meshes, &depth)?;
-            let shadow = object_shadow(build, scene, &hits)?;
-            let occlusion = object_occlusion(build, tree, (&depth, &hits), &shadow)?;
-            Ok(ObjectShadows { hits, shadow, occlusion })
-        });
-        let shadow = shadow.transpose()?;
-        let (sunlit, test) = match &shadow {
-            None => (all_lit(build, "/objects")?, DepthTest::GreaterWrite),
-            Some(shadows) => (shadows.occlusion.target.clone(), DepthTest::EqualReadOnly),
-        };
-        let objects = Objects::new(build, &meshes, (&depth, test), &sunlit, picture)?;
-        Ok(ObjectPasses { meshes, depth, shadow, objects })
-    }
-
-    fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
-        self.depth.record(frame, view)?;
-        if let Some(ObjectShadows { hits, shadow, occlusion }) = &self.shadow {
-            hits.record(frame, &self.meshes, view)?;
-            shadow.record(frame)?;
-            occlusion.record(frame)?;
-        }
-        self.objects.record(frame, &self.meshes, view)
-    }
-
-    fn targets(&self) -> Vec<Target> {
-        let shadow = |ObjectShadows { hits, shadow, occlusion }: &ObjectShadows| {
-            [
-                Target::image("object-hits", &hits.target).of("depth along the view in metres, and what was met"),
-                Target::image("object-shadow", &shadow.target).of("share of the sun that arrives, 0 to 1"),
-                Target::image("object-occlusion", &occlusion.target)
-                    .of("share of the sun that arrives past objects, 0 to 1"),
-            ]
-        };
-        self.shadow.iter().flat_map(shadow).collect()
-    }
-}
-
 impl Paper for Terrain {
     fn record(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
         self.record_passes(frame, false)
     }
 
-    /// Fails where the driver left a ray before its end.
+    /// Brings the tiles that the frames lacked, and fails where the driver left a ray before its end.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        if !self.exchange_tiles()? {
+            return Ok(false);
+        }
         let device = shaders.device();
         let unfinished = |target: &Arc<ImageView>, is_one: &dyn Fn(&[f32]) -> bool, values: usize| {
             let texels = bytemuck::pod_collect_to_vec::<u8, f32>(&read_image(device, target)?);
@@ -472,7 +432,14 @@ impl Paper for Terrain {
 
     fn warnings(&self) -> Vec<String> {
         let haze = self.parameters.haze_warning(&self.scene.extent);
-        void_warnings(self.scene.maps.iter().map(|map| &**map)).into_iter().chain(haze).collect()
+        let lacking = self.tiles().filter(|counts| counts.missing > 0).map(|counts| {
+            format!(
+                "{} tiles of those that the rays asked for lack room and are drawn from the level above them: raise \
+                 `tile-memory`",
+                counts.missing
+            )
+        });
+        void_warnings(self.scene.maps.iter().map(|map| &**map)).into_iter().chain(haze).chain(lacking).collect()
     }
 
     fn camera(&self) -> Option<Camera> {

@@ -15,7 +15,7 @@ use super::parameters::Parameters;
 use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::DeviceScene;
-use super::stage::{Build, PixelPass, VECTOR};
+use super::stage::{Build, PixelPass, Traversal, VECTOR};
 use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 use crate::measure::parameter::Choice;
 
@@ -25,12 +25,16 @@ use crate::measure::parameter::Choice;
 /// Errors of the Vulkan layer.
 pub fn normal(build: &Build<'_>, scene: &DeviceScene, depth: &Arc<ImageView>) -> Result<PixelPass, Error> {
     let target = build.image("normal", VECTOR)?;
-    let program = format!("normal-{}", build.parameters.interpolation.name());
+    let interpolation = build.parameters.interpolation.name();
+    let program = match build.traversal {
+        Traversal::Tiles => format!("normal-tiled-{interpolation}"),
+        Traversal::Halving | Traversal::Cells => format!("normal-{interpolation}"),
+    };
     let mut passes = Vec::new();
     for map in &scene.maps {
         let load = if passes.is_empty() { Load::Discard } else { Load::Keep };
-        let resources =
-            [("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())];
+        let own = [("terrain", (&map.terrain).into()), ("depth", depth.into())];
+        let resources = [&own[..], &map.levels.resources()].concat();
         passes.push(build.pass(("normal", "4"), &program, (&target, load), &resources)?);
     }
     Ok(PixelPass { stage: build.stage, passes, target })

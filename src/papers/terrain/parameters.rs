@@ -31,12 +31,26 @@ pub enum Variant {
     DdaCompute,
     /// The same as full-screen fragment passes.
     DdaFragment,
+    /// The same on the processor, on all cores.
+    DdaCpu,
+    /// As [`Variant::GpuCompute`], over maps of which the device holds the tiles that rays ask for.
+    TiledCompute,
 }
 
 impl Variant {
     /// The paper's, and what it is compared with.
     pub const PAPER: &[Variant] =
         &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh, Variant::MeshLod];
+
+    /// Everything on the processor.
+    pub fn is_host(self) -> bool {
+        matches!(self, Variant::Cpu | Variant::DdaCpu)
+    }
+
+    /// Maps lie on the device as a whole.
+    pub fn holds_whole_maps(self) -> bool {
+        !self.is_host() && self != Variant::TiledCompute
+    }
 
     /// Triangles instead of rays.
     pub fn is_rasterised(self) -> bool {
@@ -53,6 +67,8 @@ impl measure::Variant for Variant {
         Variant::MeshLod,
         Variant::DdaCompute,
         Variant::DdaFragment,
+        Variant::DdaCpu,
+        Variant::TiledCompute,
     ];
 
     fn as_str(self) -> &'static str {
@@ -64,6 +80,8 @@ impl measure::Variant for Variant {
             Variant::MeshLod => "mesh-lod",
             Variant::DdaCompute => "dda-compute",
             Variant::DdaFragment => "dda-fragment",
+            Variant::DdaCpu => "dda-cpu",
+            Variant::TiledCompute => "tiled-compute",
         }
     }
 }
@@ -264,6 +282,8 @@ pub struct Parameters {
     pub shadows: bool,
     /// The most pixels by which triangles of the variant `mesh-lod` are off, 0.01 to 1000.
     pub mesh_error_px: f32,
+    /// Device memory for the tiles of all maps in the variant `tiled-compute`, 1 to 65536 MiB.
+    pub tile_memory_mib: u32,
     /// Extinction by haze per kilometre, 0 to 1000; by the scene's size without one.
     pub haze_per_km: Option<f32>,
     /// Size of the picture in pixels.
@@ -292,6 +312,7 @@ impl Default for Parameters {
             sun: Sun { azimuth_rad: 300.0_f32.to_radians(), elevation_rad: 35.0_f32.to_radians() },
             shadows: false,
             mesh_error_px: 1.0,
+            tile_memory_mib: 64,
             haze_per_km: None,
             width: 800,
             height: 600,
@@ -340,6 +361,11 @@ impl Parameters {
                 .unit("pixels")
                 .help("Bound of the error on the screen of the triangles of variant mesh-lod")
                 .section("4"),
+            Parameter::new("tile-memory", field!(Parameters.tile_memory_mib))
+                .range(Range::from(1.0).to(65536.0))
+                .unit("MiB")
+                .help("Device memory for the tiles of all maps in variant tiled-compute, those of the coarsest levels at least")
+                .cost(Cost::Buffers),
             Parameter::new("sun", SUN)
                 .placeholder("AZIMUTH,ELEVATION")
                 .help("Place of the sun: degrees clockwise from north, degrees above the horizon")
@@ -407,6 +433,11 @@ impl Parameters {
     /// The number of pixels of the picture.
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
+    }
+
+    /// Device memory for tiles, in bytes.
+    pub fn tile_bytes(&self) -> u64 {
+        u64::from(self.tile_memory_mib) << 20
     }
 
     /// Width over height of the picture.

@@ -84,7 +84,7 @@ impl Cover {
 }
 
 /// A number that a texel holds.
-pub trait Texel: Copy + PartialOrd + Send + Sync {
+pub trait Texel: bytemuck::Pod + PartialOrd + Send + Sync {
     fn to_f32(self) -> f32;
 
     /// The samples of a map that holds this kind; none of another's.
@@ -120,12 +120,20 @@ pub struct Pyramid<T> {
 }
 
 impl<T: Texel> Pyramid<T> {
-    /// Builds every level from `data`, which has the samples of `shape`.
+    /// Builds every level from `data`, which has the samples of `shape`; texels cover their nodes.
     pub fn build(shape: Shape, data: &[T], bound: Bound) -> Self {
+        Self::covering(shape, data, (bound, Cover::Nodes))
+    }
+
+    /// As [`Pyramid::build`], of texels that cover more.
+    pub fn covering(shape: Shape, data: &[T], (bound, cover): (Bound, Cover)) -> Self {
         let mut coarser: Vec<Vec<T>> = Vec::new();
         for shift in 1..=shape.top {
-            let finer = coarser.last().map_or(data, |level| level);
-            let level = coarsen(finer, shape.level(shift - 1), shape.level(shift), bound);
+            let sizes = (shape.level(shift - 1), shape.level(shift));
+            let level = match coarser.last() {
+                None if cover != Cover::Nodes => coarsen_more(data, sizes, bound, cover.more()),
+                finer => coarsen(finer.map_or(data, |level| level), sizes, bound),
+            };
             coarser.push(level);
         }
         Pyramid { shape, coarser }
@@ -137,9 +145,34 @@ impl<T: Texel> Pyramid<T> {
     }
 }
 
-fn coarsen<T: Texel>(finer: &[T], (columns, rows): (u32, u32), (width, height): (u32, u32), bound: Bound) -> Vec<T> {
-    let choose = |a: T, b: T| if (a < b) == (bound == Bound::Lowest) { a } else { b };
-    let row_of = |row: u32| &finer[(row.min(rows - 1) * columns) as usize..][..columns as usize];
+impl Bound {
+    fn choose<T: Texel>(self, a: T, b: T) -> T {
+        if (a < b) == (self == Bound::Lowest) { a } else { b }
+    }
+}
+
+/// Columns and rows of a level and of the next coarser one.
+type Sizes = ((u32, u32), (u32, u32));
+
+/// The next coarser level, of texels that cover so many of the finer ones before and after their four as well.
+fn coarsen_more<T: Texel>(finer: &[T], sizes: Sizes, bound: Bound, [before, after]: [u32; 2]) -> Vec<T> {
+    let ((columns, rows), (width, height)) = sizes;
+    let covered = |at: u32, count: u32| (2 * at).saturating_sub(before)..(2 * at + 2 + after).min(count);
+    let coarse_row = |row: u32| {
+        (0..width).map(move |column| {
+            let first = finer[2 * row as usize * columns as usize + 2 * column as usize];
+            covered(row, rows).fold(first, |chosen, row| {
+                let texels = &finer[row as usize * columns as usize..][..columns as usize];
+                covered(column, columns).fold(chosen, |chosen, column| bound.choose(chosen, texels[column as usize]))
+            })
+        })
+    };
+    (0..height).into_par_iter().flat_map_iter(coarse_row).collect()
+}
+
+fn coarsen<T: Texel>(finer: &[T], ((columns, rows), (width, height)): Sizes, bound: Bound) -> Vec<T> {
+    let choose = |a: T, b: T| bound.choose(a, b);
+    let row_of = |row: u32| &finer[row.min(rows - 1) as usize * columns as usize..][..columns as usize];
     let coarse_row = |row: u32| {
         let (north, south) = (row_of(2 * row), row_of(2 * row + 1));
         (0..width).map(move |column| {
@@ -188,6 +221,38 @@ mod tests {
                     let values = below.map(|s| data[s as usize]);
                     let expected = if bound == Bound::Highest { values.max() } else { values.min() };
                     assert_eq!(Some(texel), expected);
+                }
+            }
+        }
+    }
+
+    /// Texels that walks read bound all that the surface over their cells reads.
+    #[test]
+    fn a_texel_of_cells_bounds_what_their_surface_reads() {
+        let (width, height) = (13, 7);
+        let shape = Shape::new(width, height);
+        let data: Vec<u16> = (0..91u32).map(|i| (i * 7919 % 1009) as u16).collect();
+        for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+            // Nodes before a cell's own and after, as the interpolation reads them.
+            let (before, after) = if interpolation == Interpolation::Bilinear { (0, 1) } else { (1, 2) };
+            for bound in [Bound::Highest, Bound::Lowest] {
+                let pyramid = Pyramid::covering(shape, &data, (bound, Cover::Cells(interpolation)));
+                for shift in 1..=shape.top {
+                    let (columns, side) = (shape.level(shift).0, 1_u32 << shift);
+                    for (i, &texel) in pyramid.level(shift).expect("the level exists").iter().enumerate() {
+                        let (column, row) = (i as u32 % columns, i as u32 / columns);
+                        let along = |at: u32, count: u32| {
+                            (at * side).saturating_sub(before)..((at + 1) * side + after).min(count)
+                        };
+                        let read = along(row, height).flat_map(|y| along(column, width).map(move |x| y * width + x));
+                        let values = read.map(|sample| data[sample as usize]);
+                        let expected = if bound == Bound::Highest { values.max() } else { values.min() };
+                        assert_eq!(
+                            Some(texel),
+                            expected,
+                            "{interpolation:?} {bound:?}: level {shift}, {column}, {row}"
+                        );
+                    }
                 }
             }
         }

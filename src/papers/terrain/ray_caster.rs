@@ -11,7 +11,7 @@ use super::blocks::{PLANE, TerrainBlock};
 use super::height_field::{Field, shift_for};
 use super::hit::{Hit, NO_DEPTH, Surface};
 use super::parameters::Lod;
-use super::pyramid::Texel;
+use super::pyramid::{Cover, Texel};
 use super::ray_segment::{CurvedSegment, RaySegment, StraightSegment, Subsegment, base_of};
 
 /// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
@@ -50,31 +50,41 @@ pub struct RayCaster<'a, T> {
 }
 
 /// The beginning of a subsegment on its ray and its length, in units.
-struct Span {
+pub(super) struct Span {
     at: u32,
     units: u32,
 }
 
 impl Span {
-    fn start(&self) -> f32 {
+    /// The first of a ray, after so many halvings.
+    pub(super) fn new(first_depth: i32) -> Self {
+        Span { at: 0, units: WHOLE >> first_depth }
+    }
+
+    pub(super) fn start(&self) -> f32 {
         self.at as f32 / WHOLE as f32
     }
 
-    fn size(&self) -> f32 {
+    pub(super) fn size(&self) -> f32 {
         self.units as f32 / WHOLE as f32
     }
 
-    fn halve(&mut self) {
+    pub(super) fn halve(&mut self) {
         self.units /= 2;
     }
 
-    fn advance(&mut self) {
+    pub(super) fn advance(&mut self) {
         self.at += self.units;
         self.units = 1 << self.at.trailing_zeros();
     }
 
-    fn is_done(&self) -> bool {
+    pub(super) fn is_done(&self) -> bool {
         self.at >= WHOLE
+    }
+
+    /// True of a subsegment that is halved no further.
+    pub(super) fn is_shortest(&self) -> bool {
+        self.units == 1
     }
 }
 
@@ -111,27 +121,47 @@ impl<T: Texel> RayCaster<'_, T> {
     /// The first place where a ray is not above the map's surface, before `limit_m`.
     pub fn trace(&self, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Hit> {
         if self.terrain.base_kind == PLANE {
-            self.follow(&StraightSegment::new(self.terrain, eye, direction, limit_m)?)
+            self.first_hit(&StraightSegment::new(self.terrain, eye, direction, limit_m)?)
         } else {
-            self.follow(&CurvedSegment::new(self.terrain, eye, direction, limit_m)?)
+            self.first_hit(&CurvedSegment::new(self.terrain, eye, direction, limit_m)?)
         }
     }
 
-    fn hit(&self, depth_m: f32, place: Vec2, surface: Surface, shift: i32, steps: u32) -> Hit {
+    fn first_hit(&self, ray: &impl RaySegment) -> Option<Hit> {
+        match self.field.cover {
+            Cover::Nodes => self.follow(ray),
+            Cover::Cells(_) => self.walk(ray),
+        }
+    }
+
+    pub(super) fn hit(&self, depth_m: f32, place: Vec2, surface: Surface, shift: i32, steps: u32) -> Hit {
         let map = self.terrain.map_index as u32;
         Hit { depth_m, place: place.to_array(), surface, shift: shift as u32, map, steps }
     }
 
-    fn follow(&self, ray: &impl RaySegment) -> Option<Hit> {
-        let (terrain, top) = (self.terrain, self.field.shape().top);
+    /// The hit of a segment that begins below the surface.
+    pub(super) fn entry(&self, ray: &impl RaySegment) -> Option<Hit> {
         let near_m = ray.depth_m(0.0);
         let first = ray.subsegment(0.0, 0.0).near.xy();
         let shift = self.finest_shift(near_m);
-        if let Some(surface) = ray.entry_surface(self.field.height(shift, first)) {
-            return Some(self.hit(near_m, first, surface, shift, 1));
+        let surface = ray.entry_surface(self.field.height(shift, first))?;
+        Some(self.hit(near_m, first, surface, shift, 1))
+    }
+
+    /// True where a ray leaves its straight line by so little that a level's cells do not show it.
+    pub(super) fn is_straight(&self, slack: Vec3, shift: i32) -> bool {
+        let straight = STRAIGHT * (shift as f32).exp2();
+        let terrain = self.terrain;
+        slack.x.max(slack.y) <= straight && slack.z * terrain.height_unit_m <= straight * terrain.spacing_m.x
+    }
+
+    fn follow(&self, ray: &impl RaySegment) -> Option<Hit> {
+        let (terrain, top) = (self.terrain, self.field.shape().top);
+        if let Some(hit) = self.entry(ray) {
+            return Some(hit);
         }
         let mut steps = 0;
-        let mut span = Span { at: 0, units: WHOLE >> ray.first_depth() };
+        let mut span = Span::new(ray.first_depth());
         while !span.is_done() {
             let (start, size) = (span.start(), span.size());
             let segment = ray.subsegment(start, size);
@@ -139,14 +169,11 @@ impl<T: Texel> RayCaster<'_, T> {
             let (low, high) = (near.min(far) - slack.xy(), near.max(far) + slack.xy());
             let shift = shift_for((high - low).max_element(), top);
             let finest = self.finest_shift(segment.depth_m);
-            let straight = STRAIGHT * (finest as f32).exp2();
-            let is_straight =
-                slack.x.max(slack.y) <= straight && slack.z * terrain.height_unit_m <= straight * terrain.spacing_m.x;
             let lowest = segment.near.z.min(segment.far.z) - slack.z - terrain.rounding_height;
             steps += 1;
             if lowest > self.highest_below(low - terrain.rounding_nodes, high + terrain.rounding_nodes, shift) {
                 span.advance();
-            } else if (shift <= finest && is_straight) || span.units == 1 {
+            } else if (shift <= finest && self.is_straight(slack, finest)) || span.is_shortest() {
                 if let Some((fraction, surface)) = self.intersect(ray, &segment) {
                     let depth_m = ray.depth_m(start + fraction * size);
                     let place = near.lerp(far, fraction);
@@ -165,7 +192,7 @@ impl<T: Texel> RayCaster<'_, T> {
     }
 
     /// The level at which subdivision ends at a depth: the data's, or that of a pixel's footprint.
-    fn finest_shift(&self, depth_m: f32) -> i32 {
+    pub(super) fn finest_shift(&self, depth_m: f32) -> i32 {
         match self.footprint {
             Footprint::Data => 0,
             Footprint::Level(shift) => shift,

@@ -13,7 +13,7 @@ use super::hit::NO_DEPTH;
 use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::{Extent, Placement, Rays};
-use super::pyramid::{Bound, Cover};
+use super::pyramid::Bound;
 use super::stage::Traversal;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
@@ -132,19 +132,20 @@ impl DeviceScene {
         maps: &[Arc<HeightMap>],
         (drape, traversal): (Option<&Drape>, Traversal),
     ) -> Result<Self, Error> {
-        let cover = match traversal {
-            Traversal::Halving => Cover::Nodes,
-            Traversal::Cells => Cover::Cells(parameters.interpolation),
-        };
+        let cover = traversal.cover(parameters.interpolation);
         let bounds: &[Bound] = match parameters.interpolation {
             Interpolation::Bilinear => &[Bound::Highest],
             Interpolation::Bicubic => &[Bound::Highest, Bound::Lowest],
         };
         let device = shaders.device();
+        let pool = (parameters.interpolation, parameters.tile_bytes() / maps.len().max(1) as u64);
         let map = |(index, map): (usize, &Arc<HeightMap>)| {
             let name = format!("{label}/map-{index}");
             Ok(Map {
-                levels: Levels::new(shaders, &name, map, bounds, cover)?,
+                levels: match traversal {
+                    Traversal::Tiles => Levels::in_tiles(device, &name, map, pool)?,
+                    Traversal::Halving | Traversal::Cells => Levels::new(shaders, &name, map, bounds, cover)?,
+                },
                 terrain: block_buffer::<TerrainBlock>(device, &format!("{name}/land"))?,
             })
         };

@@ -19,15 +19,18 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Shape, Value, one, parse_finite};
 use crate::measure::statistics::median;
-use crate::measure::stress::Axis;
+use crate::measure::stress::{Axis, host_memory};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
     Collider, Drape, DrapeSource, Draping, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement,
-    Terrain, Variant, View, WRITTEN,
+    Terrain, TileCounts, Variant, View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
+
+/// Samples a side that the images of many devices hold.
+const LARGE_SIDE: u32 = 16_384;
 
 /// A user's configuration.
 #[derive(Debug, Clone)]
@@ -108,6 +111,13 @@ impl Value for Voids {
     }
 }
 
+fn tile_results(counts: TileCounts) -> Json {
+    let TileCounts { tiles, held, missing, loaded, exchanges, loading_ms } = counts;
+    json!({
+        "tiles": tiles, "held": held, "missing": missing, "loaded": loaded, "exchanges": exchanges, "loading_ms": loading_ms,
+    })
+}
+
 /// A setup with its maps, objects and drape loaded.
 pub struct Scene {
     /// In the order in which they were named.
@@ -164,9 +174,32 @@ impl Setup {
         Ok(self.objects.iter().zip(meshes).map(place).collect())
     }
 
+    /// Triangles of a synthetic volcano that is larger than most devices' images.
+    fn promised_cells(&self) -> u64 {
+        let is_large = self.resolution > LARGE_SIDE && self.maps.contains(&HeightMapSource::Volcano);
+        if is_large { 2 * u64::from(self.resolution).pow(2) } else { 0 }
+    }
+
+    /// Refuses a large volcano whose samples, and the levels above them, this machine has no memory for.
+    fn check_host_memory(&self) -> Result<(), Error> {
+        let needed = u64::from(self.resolution).pow(2) * size_of::<u16>() as u64 * 4 / 3;
+        match host_memory::available_bytes() {
+            Some(available) if self.resolution > LARGE_SIDE && needed > available => Err(Error::Input(format!(
+                "`resolution` {}: its levels take {} MiB, and this machine has {} MiB left; lower it",
+                self.resolution,
+                needed >> 20,
+                available >> 20
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
         let mut map = match source {
-            HeightMapSource::Volcano => volcano(self.resolution, self.seed)?,
+            HeightMapSource::Volcano => {
+                self.check_host_memory()?;
+                volcano(self.resolution, self.seed)?
+            }
             other => other.load()?,
         };
         if let Voids::Level(_) = self.voids {
@@ -234,11 +267,15 @@ impl Study for Setup {
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
-        Ok(promised_triangles(self.objects.iter().map(|object| &object.mesh))?)
+        Ok(promised_triangles(self.objects.iter().map(|object| &object.mesh))? + self.promised_cells())
     }
 
-    fn foresee(&self, triangles: u64, _: Variant) -> Estimate {
-        Estimate { bytes: vec![("object", DRAWN_BYTES * triangles as f64)], ..Estimate::default() }
+    fn foresee(&self, triangles: u64, variant: Variant) -> Estimate {
+        let cells = self.promised_cells();
+        // The samples and at least one layer of coarser levels, of 16 bits.
+        let whole = if variant.holds_whole_maps() { 2.0 * cells as f64 } else { 0.0 };
+        let objects = DRAWN_BYTES * triangles.saturating_sub(cells) as f64;
+        Estimate { bytes: vec![("object", objects), ("resolution", whole)], ..Estimate::default() }
     }
 
     fn identity(&self) -> Identity {
@@ -291,6 +328,7 @@ impl Study for Setup {
                 ("hit_share", json!(census.hit_fraction())),
                 ("patches", json!(built.paper.patches().map(|patches| patches.iter().sum::<u64>()))),
                 ("levels", json!(levels)),
+                ("tiles", json!(built.paper.tiles().map(tile_results))),
             ]);
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
@@ -308,8 +346,8 @@ impl Study for Setup {
         let maps = [
             Parameter::new("map", field!(Setup.maps))
                 .help(
-                    "Height map: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file; \
-                     the terrains of several are united",
+                    "Height map: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file, or a \
+                     folder of .hgt files that lie side by side; the terrains of several are united",
                 )
                 .cost(Cost::Buffers)
                 .everyday()

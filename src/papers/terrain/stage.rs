@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::Parameters;
+use super::parameters::{Interpolation, Parameters};
+use super::pyramid::Cover;
 use super::scene::DeviceScene;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
@@ -31,6 +32,18 @@ pub enum Traversal {
     Halving,
     /// From border to border of blocks of cells.
     Cells,
+    /// Section 3, through levels in tiles of which the device holds some.
+    Tiles,
+}
+
+impl Traversal {
+    /// The nodes that texels of coarser levels cover.
+    pub fn cover(self, interpolation: Interpolation) -> Cover {
+        match self {
+            Traversal::Halving | Traversal::Tiles => Cover::Nodes,
+            Traversal::Cells => Cover::Cells(interpolation),
+        }
+    }
 }
 
 /// All that passes are built with.
@@ -49,12 +62,18 @@ pub struct Build<'a> {
 }
 
 impl Build<'_> {
+    /// The nodes that texels of coarser levels cover.
+    pub fn cover(&self) -> Cover {
+        self.traversal.cover(self.parameters.interpolation)
+    }
+
     /// The name of the program of `pass` that casts rays, before what it is made of beside base and interpolation.
     pub fn ray_program(&self, pass: &str) -> String {
         let Parameters { base, interpolation, .. } = self.parameters;
         match self.traversal {
             Traversal::Halving => format!("{pass}-{}-{}", base.kind(), interpolation.name()),
             Traversal::Cells => format!("{pass}-dda-{}-{}", base.kind(), interpolation.name()),
+            Traversal::Tiles => format!("{pass}-tiled-{}-{}", base.kind(), interpolation.name()),
         }
     }
 
@@ -124,9 +143,9 @@ impl Build<'_> {
     ) -> Result<PixelPass, Error> {
         let mut passes = Vec::new();
         for (map, target) in scene.maps.iter().zip(ping_pong.into_iter().cycle()) {
-            let own =
-                [("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("prior", (&prior).into())];
-            passes.push(self.pass(name, program, (target, Load::Discard), &[&own[..], others].concat())?);
+            let own = [("terrain", (&map.terrain).into()), ("prior", (&prior).into())];
+            let resources = [&own[..], &map.levels.resources(), others].concat();
+            passes.push(self.pass(name, program, (target, Load::Discard), &resources)?);
             prior = target.clone();
         }
         Ok(PixelPass { stage: self.stage, passes, target: prior })

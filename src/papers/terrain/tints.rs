@@ -61,7 +61,7 @@ pub fn tinted(
 }
 
 /// The base's normal below a point of the world `height_m` over it.
-fn up_at(light: &LightBlock, point: Vec3, height_m: f32) -> Vec3 {
+pub fn up_at(light: &LightBlock, point: Vec3, height_m: f32) -> Vec3 {
     if light.base_kind == PLANE {
         return Vec3::Y;
     }

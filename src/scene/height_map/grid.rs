@@ -64,9 +64,9 @@ impl<T: Copy + Into<f64>> Grid<T> {
             return Err(whole("all its samples are void; a map needs at least one height".to_owned()));
         }
         let mut void_places = Vec::with_capacity(void_count);
-        // A map has at most 2^28 samples.
-        let indices = self.values.iter().zip(0..).filter(|(value, _)| is_void((**value).into(), no_data));
-        void_places.extend(indices.map(|(_, index): (_, u32)| index));
+        // A map has at most 2^32 samples.
+        let indices = self.values.iter().enumerate().filter(|(_, value)| is_void((**value).into(), no_data));
+        void_places.extend(indices.map(|(index, _)| index as u32));
         let fits = self.integral && high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT;
         let samples = if fits {
             // The void's own value may lie anywhere; the conversion saturates.

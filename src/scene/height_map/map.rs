@@ -31,7 +31,7 @@ pub enum Samples {
 
 impl HeightMap {
     /// Fewest and most samples a side.
-    pub const SIDE: std::ops::RangeInclusive<u32> = 2..=16_384;
+    pub const SIDE: std::ops::RangeInclusive<u32> = 2..=65_536;
 
     /// A map of `width` x `height` samples, 1 m apart.
     ///
@@ -324,9 +324,9 @@ mod tests {
     fn impossible_maps_are_refused_with_the_reason() {
         let message = |result: Result<HeightMap, Error>| result.unwrap_err().to_string();
         for (width, height, samples, expected) in [
-            (0, 5, steps(&[], 0.0, 1.0), "it has 0 x 5 samples; a map has 2 to 16384 a side"),
+            (0, 5, steps(&[], 0.0, 1.0), "it has 0 x 5 samples; a map has 2 to 65536 a side"),
             (1, 2, steps(&[1, 2], 0.0, 1.0), "it has 1 x 2 samples"),
-            (16_385, 2, steps(&[1], 0.0, 1.0), "it has 16385 x 2 samples"),
+            (65_537, 2, steps(&[1], 0.0, 1.0), "it has 65537 x 2 samples"),
             (2, 2, steps(&[1, 2, 3], 0.0, 1.0), "3 samples for 2 x 2, which needs 4"),
             (2, 2, steps(&[0; 4], f32::NAN, 1.0), "16-bit steps need a finite origin"),
             (2, 2, steps(&[0; 4], 0.0, 0.0), "16-bit steps need a finite origin and a finite, positive step"),

@@ -42,4 +42,5 @@ mod stress;
 mod stress_ends;
 mod terrain;
 mod terrain_drapes;
+mod terrain_tiles;
 mod vulkan;

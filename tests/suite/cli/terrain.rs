@@ -364,8 +364,8 @@ fn voids_lie_at_a_level_or_are_holes() {
 #[test]
 fn what_cannot_be_is_refused_by_its_option() {
     for (options, parts) in [
-        ("--resolution 1", &["--resolution 1", "2 to 16384"][..]),
-        ("--resolution 16385", &["--resolution 16385"]),
+        ("--resolution 1", &["--resolution 1", "2 to 65536"][..]),
+        ("--resolution 65537", &["--resolution 65537"]),
         ("--resolution 64 --map maunga-whau", &["--resolution", "volcano"]),
         ("--spacing 0", &["--spacing 0"]),
         ("--exaggeration -1", &["--exaggeration -1"]),
@@ -409,7 +409,7 @@ fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
     grid("more.asc", 2, 2, "0 5 10\n0 5 10\n");
     grid("nan.asc", 2, 2, "0 nan\n0 5\n");
     grid("none.asc", 0, 2, "");
-    grid("large.asc", 16_385, 2, &"0 ".repeat(2 * 16_385));
+    grid("large.asc", 65_537, 2, &"0 ".repeat(2 * 65_537));
     grid("void.asc", 2, 2, "NODATA_value -1\n-1 -1\n-1 -1\n");
     file(&out, "cut.tif", "II*\0");
     file(&out, "text.png", "no picture");
@@ -425,7 +425,7 @@ fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
         ("more.asc", "more than the 4 heights"),
         ("nan.asc", "row 0, column 1: its height is NaN"),
         ("none.asc", "by ncols and nrows of its header, it has 0 x 2 samples"),
-        ("large.asc", "it has 16385 x 2 samples; a map has 2 to 16384 a side"),
+        ("large.asc", "it has 65537 x 2 samples; a map has 2 to 65536 a side"),
         ("void.asc", "all its samples are void"),
         ("cut.tif", "cut.tif"),
         ("text.png", "neither TIFF nor PNG"),

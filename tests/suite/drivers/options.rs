@@ -125,6 +125,7 @@ fn terrain_is_clean_with_its_options() {
                 "--map volcano --map volcano --place 0,0,0 --place 5000,0,10 --drape hypsometric",
             ),
             ("mesh-lod", "--mesh-error 4 --shadows"),
+            ("tiled-compute", "--tile-memory 1 --shadows --object teapot"),
         ],
     );
 }

@@ -94,6 +94,7 @@ fn terrain_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
         ("dda-fragment", "base=earth shadows=true drape=slope"),
         ("gpu-compute", "base=cylinder:100000 shadows=true drape=contours"),
         ("mesh-lod", "base=earth drape=contours"),
+        ("tiled-compute", "base=earth shadows=true interpolation=bicubic"),
     ] {
         is_flat::<terrain::setup::Setup>(variant, &format!("size=32x24 resolution=64 {options}"));
     }

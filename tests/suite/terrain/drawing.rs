@@ -38,7 +38,8 @@ impl Drawing {
 /// Draws one terrain from one place after the other.
 pub struct Painter {
     device: Arc<Device>,
-    paper: Terrain,
+    shaders: ShaderLibrary,
+    pub paper: Terrain,
     recorder: Recorder,
 }
 
@@ -55,6 +56,7 @@ impl Painter {
         Painter {
             device: device.clone(),
             paper: Terrain::new(&shaders, "test", variant, parameters, inputs).unwrap(),
+            shaders,
             recorder: Recorder::new(device).unwrap(),
         }
     }
@@ -64,8 +66,18 @@ impl Painter {
         self.draw()
     }
 
+    /// The picture from a camera, drawn again until the paper has all that it asks for.
+    pub fn settled_from(&mut self, camera: Camera) -> Drawing {
+        loop {
+            let drawing = self.from(camera);
+            if self.paper.settle(&self.shaders).unwrap() {
+                return drawing;
+            }
+        }
+    }
+
     pub fn draw(&mut self) -> Drawing {
-        let Painter { device, paper, recorder } = self;
+        let Painter { device, paper, recorder, .. } = self;
         let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, 0)).unwrap();
         let passes = sample.passes.iter().map(|pass| pass.info.name).collect();
         let picture = paper.picture();

@@ -114,6 +114,7 @@ fn a_pixel_s_height_is_that_of_its_footprint() {
                     (Variant::GpuFragment, Compiler::Naga),
                     (Variant::DdaCompute, Compiler::Naga),
                     (Variant::DdaFragment, Compiler::Glslang),
+                    (Variant::DdaCpu, Compiler::Glslang),
                 ] {
                     let mut painter = Painter::new(device, compiler, variant, &parameters, &inputs);
                     for (stand, camera) in cameras {

@@ -44,7 +44,7 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                 let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                 let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
                 let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
-                let mut dda = [Variant::DdaCompute, Variant::DdaFragment].map(paint);
+                let mut dda = [Variant::DdaCompute, Variant::DdaFragment, Variant::DdaCpu].map(paint);
                 let (mut lit, mut dark) = (0, 0);
                 for camera in cameras {
                     let rays = Rays::new(&camera, SIZE.0, SIZE.1);
@@ -118,7 +118,9 @@ fn a_grey_land_shows_the_light_alone() {
                         let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
                         let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
                         let normal = DVec3::new(normal[0].into(), normal[1].into(), normal[2].into());
-                        let open = (1.0 + normal.y) / 2.0;
+                        let place = world.moved(rays.eye + f64::from(hit.depth_m) * direction);
+                        let up = world.terrain.base.frame(world.terrain.base.place(place)).normal;
+                        let open = (1.0 + world.turned(normal).dot(up)) / 2.0;
                         let light = grey * (SUNLIGHT * lambert(normal, to_sun) + SKYLIGHT * open);
                         let distance_km = f64::from(hit.depth_m) * direction.length() / 1000.0;
                         let linear = HAZE.lerp(light, (-f64::from(haze_per_km) * distance_km).exp());

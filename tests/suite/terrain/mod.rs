@@ -14,6 +14,7 @@ mod pyramids;
 mod ridges;
 mod scenes;
 mod silhouette;
+mod tiles;
 mod tints;
 mod variants;
 mod verdict;

@@ -17,8 +17,14 @@ use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
 pub const THOUSANDTH: f64 = 1e-3;
-const VARIANTS: [Variant; 5] =
-    [Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::DdaCompute, Variant::DdaFragment];
+const VARIANTS: [Variant; 6] = [
+    Variant::Cpu,
+    Variant::GpuCompute,
+    Variant::GpuFragment,
+    Variant::DdaCompute,
+    Variant::DdaFragment,
+    Variant::DdaCpu,
+];
 const STANDS: [Stand; 7] =
     [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Under, Stand::Down, Stand::Up, Stand::Far(4.0)];
 

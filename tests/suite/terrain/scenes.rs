@@ -11,8 +11,15 @@ use super::maps::{alone, map, volcano};
 use super::variants::{assert_agree, small};
 use crate::common::gpu_test;
 
-const VARIANTS: [Variant; 6] =
-    [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh, Variant::DdaCompute, Variant::DdaFragment];
+const VARIANTS: [Variant; 7] = [
+    Variant::GpuCompute,
+    Variant::GpuFragment,
+    Variant::Cpu,
+    Variant::Mesh,
+    Variant::DdaCompute,
+    Variant::DdaFragment,
+    Variant::DdaCpu,
+];
 
 fn camera(eye: Vec3, target: Vec3) -> View {
     let up = Vec3::Y;

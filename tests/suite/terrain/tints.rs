@@ -167,7 +167,9 @@ fn lines_and_colours_are_the_oracle_s() {
                         }
                         let [nx, ny, nz, _] = drawing.normals[pixel].map(f64::from);
                         let normal = DVec3::new(nx, ny, nz);
-                        let light = SUNLIGHT * lambert(normal, to_sun) + SKYLIGHT * (1.0 + normal.y) / 2.0;
+                        let up = world.terrain.base.frame(hit.place).normal;
+                        let upright = world.turned(normal).dot(up);
+                        let light = SUNLIGHT * lambert(normal, to_sun) + SKYLIGHT * (1.0 + upright) / 2.0;
                         let linear = match draping {
                             Draping::Contours { .. } => {
                                 let share = ink(height_m, rise_m);
@@ -175,8 +177,7 @@ fn lines_and_colours_are_the_oracle_s() {
                                 decoded(bare_pixels[pixel]) * (1.0 - share) + share * INK * light
                             }
                             Draping::Slope => {
-                                let up = world.terrain.base.frame(hit.place).normal;
-                                let degrees = world.turned(normal).dot(up).clamp(-1.0, 1.0).acos().to_degrees();
+                                let degrees = upright.clamp(-1.0, 1.0).acos().to_degrees();
                                 marked += usize::from(degrees > 35.0);
                                 light * slope_color(degrees)
                             }

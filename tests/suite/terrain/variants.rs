@@ -32,8 +32,7 @@ fn all_variants_find_the_same_hits() {
                     let parameters = small(view, lod);
                     let compute = Drawing::of(device, Variant::GpuCompute, &parameters, &maps);
                     // Of two traversals that end at a pixel's footprint each ends at its own place in it.
-                    let dda: &[Variant] =
-                        if lod == Lod::Exact { &[Variant::DdaCompute, Variant::DdaFragment] } else { &[] };
+                    let dda: &[Variant] = if lod == Lod::Exact { &DDA } else { &[] };
                     for &variant in [Variant::GpuFragment, Variant::Cpu].iter().chain(dda) {
                         let other = Drawing::of(device, variant, &parameters, &maps);
                         assert_agree(&format!("{name} {lod:?} {view:?} {}", variant.as_str()), &compute, &other);
@@ -43,6 +42,8 @@ fn all_variants_find_the_same_hits() {
         }
     });
 }
+
+const DDA: [Variant; 3] = [Variant::DdaCompute, Variant::DdaFragment, Variant::DdaCpu];
 
 const BASES: [Base; 3] = [
     Base::Cylinder { radius_m: 9000.0 },
@@ -60,8 +61,7 @@ fn all_variants_agree_on_every_base_and_interpolation() {
                     let maps = alone(volcano(100));
                     let compute = Drawing::of(device, Variant::GpuCompute, &parameters, &maps);
                     // Of two traversals that end at a pixel's footprint each ends at its own place in it.
-                    let dda: &[Variant] =
-                        if lod == Lod::Exact { &[Variant::DdaCompute, Variant::DdaFragment] } else { &[] };
+                    let dda: &[Variant] = if lod == Lod::Exact { &DDA } else { &[] };
                     for &variant in [Variant::GpuFragment, Variant::Cpu].iter().chain(dda) {
                         let other = Drawing::of(device, variant, &parameters, &maps);
                         assert_agree(

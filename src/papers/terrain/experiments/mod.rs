@@ -3,6 +3,7 @@
 mod bodies;
 pub mod collisions;
 pub mod figures;
+mod flight;
 pub mod table;
 
 use std::path::PathBuf;
@@ -16,7 +17,7 @@ use super::{Variant, View};
 use crate::field;
 use crate::file::{check_writable, write};
 use crate::measure::experiment::Experiment;
-use crate::measure::parameter::{Choice, Parameter};
+use crate::measure::parameter::{Choice, EyeAndTarget, Parameter};
 use crate::measure::study::Study;
 use crate::measure::sweep::Point;
 use crate::measure::{Error, Variant as _, experiment};
@@ -36,6 +37,8 @@ pub struct Options {
     spheres: Vec<[f64; 4]>,
     /// A file of both.
     bodies: Option<PathBuf>,
+    /// The last camera of a flight.
+    to: Option<EyeAndTarget>,
 }
 
 impl Options {
@@ -66,6 +69,8 @@ impl Choice for Listed {
         Listed(Some(Variant::MeshLod)),
         Listed(Some(Variant::DdaCompute)),
         Listed(Some(Variant::DdaFragment)),
+        Listed(Some(Variant::DdaCpu)),
+        Listed(Some(Variant::TiledCompute)),
         Listed(None),
     ];
     const NAMES: &'static [(&'static str, &'static str)] = &[
@@ -76,6 +81,8 @@ impl Choice for Listed {
         ("mesh-lod", ""),
         ("dda-compute", ""),
         ("dda-fragment", ""),
+        ("dda-cpu", ""),
+        ("tiled-compute", ""),
         ("all", ""),
     ];
 }
@@ -103,6 +110,12 @@ pub fn options() -> Vec<Parameter<Options>> {
             .placeholder("FILE.csv")
             .help("Many of both, one a line: six numbers for a segment, four for a sphere")
             .everyday(),
+        Parameter::new("to", field!(Options.to))
+            .placeholder("EYE,TARGET")
+            .help(
+                "Last camera of a flight, as `camera` the first: x,y,z,x,y,z in metres: east, up from the base, south",
+            )
+            .default_text("the first, as far north as the maps reach"),
     ]
 }
 
@@ -149,6 +162,13 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: &["variant"],
             refuses: &[],
             run: |context| tabulate(context, Axis::Interpolation, &context.options.variants()).map(drop),
+        },
+        Experiment {
+            name: "flight",
+            help: "A straight flight over maps in tiles: frames, stalls, tiles that came and were missing",
+            options: &["to"],
+            refuses: &[],
+            run: fly,
         },
     ]
 }
@@ -222,6 +242,16 @@ fn tabulate(context: &Context<'_>, axis: Axis, variants: &[Variant]) -> Result<V
     }
     machine.check_validation()?;
     swept.stopped.map_or(Ok(points), Err)
+}
+
+fn fly(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let pictures = context.measure.frames.unwrap_or(flight::PICTURES).max(2);
+    let table = flight::table(&mut machine, &context.setup, context.options.to, pictures)?;
+    context.publish_plotted(&machine, &table, table.lines("picture", "ms", &flight::TIMES))?;
+    context.console.say(&flight::summary(&table));
+    machine.check_validation().map_err(Error::from).map(drop)
 }
 
 fn heat_maps(context: &Context<'_>, points: &[Point<Setup>]) -> Result<(), Error> {

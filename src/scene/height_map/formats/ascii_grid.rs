@@ -236,7 +236,7 @@ mod tests {
             ("ncols 2\n1 2 3 4", "the header has no nrows"),
             ("ncols 0\nnrows 5\n1", "by ncols and nrows of its header, it has 0 x 5 samples"),
             ("ncols 0\nnrows 5\n", "by ncols and nrows of its header, it has 0 x 5 samples"),
-            ("ncols 16385\nnrows 5\n1", "16385 x 5 samples; a map has 2 to 16384 a side"),
+            ("ncols 65537\nnrows 5\n1", "65537 x 5 samples; a map has 2 to 65536 a side"),
             ("ncols 2.5\nnrows 5\n1", "ncols is 2.5; it has to be a whole number"),
             ("ncols 900\nnrows 900\n1 2", "heights of ncols x nrows = 900 x 900 take at least 1619999"),
             (&format!("{head}cellsize -1\n1 2 3 4"), "line 3: cellsize is -1; it has to be positive"),

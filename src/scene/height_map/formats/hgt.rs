@@ -8,56 +8,78 @@ use std::io::Read;
 
 /// Columns and rows of a tile of one degree: 3 arc-seconds, 1 arc-second, and 1 arc-second north of 50 degrees.
 const SIZES: [(u32, u32); 3] = [(1_201, 1_201), (3_601, 3_601), (1_801, 3_601)];
-const VOID: f64 = -32_768.0;
+/// The sample of no height.
+pub(super) const VOID: i16 = i16::MIN;
+
+/// An SRTM tile of one degree.
+pub(super) struct Tile {
+    /// Columns.
+    pub(super) width: u32,
+    /// Rows.
+    pub(super) height: u32,
+    /// Latitude of its southern border, degrees.
+    south_deg: i32,
+    /// Longitude of its western border, degrees.
+    west_deg: i32,
+    /// Metres, row by row from the north-west; [`VOID`] where there are none.
+    pub(super) values: Vec<i16>,
+}
+
+/// Columns and rows of a tile of so many bytes.
+pub(super) fn size(size_bytes: u64) -> Result<(u32, u32), Fault> {
+    let bytes = |(width, height): (u32, u32)| 2 * u64::from(width) * u64::from(height);
+    SIZES.iter().copied().find(|size| bytes(*size) == size_bytes).ok_or_else(|| {
+        let known = SIZES.map(|size| format!("{} ({} x {})", bytes(size), size.0, size.1)).join(", ");
+        Fault::new(Place::Whole, format!("its size is {size_bytes} bytes; an SRTM tile has one of {known}"))
+    })
+}
+
+/// Latitude and longitude of the south-west corner that a tile's name begins with, degrees.
+pub(super) fn corner(name: &str) -> Result<(i32, i32), Fault> {
+    named_corner(name).ok_or_else(|| {
+        let reason =
+            "its name tells no corner; name it after the degrees of its south-west corner, such as N37E140.hgt";
+        Fault::new(Place::Whole, reason)
+    })
+}
 
 /// Reads an SRTM tile: big-endian 16-bit metres, whose size tells the resolution and whose name, such as `N37E140.hgt`,
 /// tells the degrees of the south-west corner.
-pub(super) fn parse(name: &str, size_bytes: u64, input: impl Read) -> Result<HeightMap, Fault> {
-    let bytes = |(width, height): (u32, u32)| 2 * u64::from(width) * u64::from(height);
-    let Some(&(width, height)) = SIZES.iter().find(|size| bytes(**size) == size_bytes) else {
-        let known = SIZES.map(|size| format!("{} ({} x {})", bytes(size), size.0, size.1)).join(", ");
-        let reason = format!("its size is {size_bytes} bytes; an SRTM tile has one of {known}");
-        return Err(Fault::new(Place::Whole, reason));
-    };
-    let Some((south_deg, west_deg)) = corner(name) else {
-        let reason =
-            "its name tells no corner; name it after the degrees of its south-west corner, such as N37E140.hgt";
-        return Err(Fault::new(Place::Whole, reason));
-    };
+pub(super) fn read(name: &str, size_bytes: u64, input: impl Read) -> Result<Tile, Fault> {
+    let (width, height) = size(size_bytes)?;
+    let (south_deg, west_deg) = corner(name)?;
     let rows = Rows {
         width: width as usize,
         height: height as usize,
         stride_bytes: 2 * u64::from(width),
         order: ByteOrder::Big,
     };
-    let step_deg = DVec2::new(1.0 / f64::from(width - 1), 1.0 / f64::from(height - 1));
-    let place = Geographic { west_deg, north_deg: south_deg + 1.0, step_deg };
-    Grid {
-        width,
-        height,
-        values: rows.read::<i16>(input)?,
-        integral: true,
-        no_data: Some(VOID),
-        placement: Placement::Degrees(place),
-    }
-    .into_map()
+    Ok(Tile { width, height, south_deg, west_deg, values: rows.read::<i16>(input)? })
 }
 
-/// Latitude and longitude of the south-west corner that a tile's name begins with, degrees.
-fn corner(name: &str) -> Option<(f64, f64)> {
+/// The map of one tile.
+pub(super) fn parse(name: &str, size_bytes: u64, input: impl Read) -> Result<HeightMap, Fault> {
+    let Tile { width, height, south_deg, west_deg, values } = read(name, size_bytes, input)?;
+    let step_deg = DVec2::new(1.0 / f64::from(width - 1), 1.0 / f64::from(height - 1));
+    let place = Geographic { west_deg: west_deg.into(), north_deg: f64::from(south_deg) + 1.0, step_deg };
+    let (no_data, placement) = (Some(VOID.into()), Placement::Degrees(place));
+    Grid { width, height, values, integral: true, no_data, placement }.into_map()
+}
+
+fn named_corner(name: &str) -> Option<(i32, i32)> {
     let upper = name.to_ascii_uppercase();
-    let signed = |text: &str, positive: char, negative: char, most: f64| {
+    let signed = |text: &str, positive: char, negative: char, most: i32| {
         let (sign, digits) = match text.chars().next()? {
-            letter if letter == positive => (1.0, &text[1..]),
-            letter if letter == negative => (-1.0, &text[1..]),
+            letter if letter == positive => (1, &text[1..]),
+            letter if letter == negative => (-1, &text[1..]),
             _ => return None,
         };
-        let degrees: f64 = digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
+        let degrees: i32 = digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
         (degrees <= most).then_some(sign * degrees)
     };
-    let latitude_deg = signed(upper.get(..3)?, 'N', 'S', 90.0)?;
-    let longitude_deg = signed(upper.get(3..7)?, 'E', 'W', 180.0)?;
-    (latitude_deg < 90.0).then_some((latitude_deg, longitude_deg))
+    let latitude_deg = signed(upper.get(..3)?, 'N', 'S', 90)?;
+    let longitude_deg = signed(upper.get(3..7)?, 'E', 'W', 180)?;
+    (latitude_deg < 90).then_some((latitude_deg, longitude_deg))
 }
 
 #[cfg(test)]
@@ -66,12 +88,12 @@ mod tests {
 
     #[test]
     fn names_tell_the_corner() {
-        assert_eq!(corner("N37E140.hgt"), Some((37.0, 140.0)));
-        assert_eq!(corner("s01w079.SRTMGL1.HGT"), Some((-1.0, -79.0)));
+        assert_eq!(named_corner("N37E140.hgt"), Some((37, 140)));
+        assert_eq!(named_corner("s01w079.SRTMGL1.HGT"), Some((-1, -79)));
         for name in
             ["", "N37", "bandai.hgt", "N37E1.hgt", "N3xE140.hgt", "N95E140.hgt", "N37E181.hgt", "N-1E140", "é37E140"]
         {
-            assert_eq!(corner(name), None, "{name}");
+            assert_eq!(named_corner(name), None, "{name}");
         }
     }
 

@@ -5,6 +5,7 @@ mod ascii_grid;
 mod esri;
 mod geotiff;
 mod hgt;
+mod hgt_folder;
 mod placement;
 mod png;
 
@@ -20,8 +21,12 @@ const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// TIFF and BigTIFF, little and big endian.
 const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 
-/// Reads the height map at `path`: by its ending, in either case, or by its content if that is a TIFF or a PNG.
+/// Reads the height map at `path`: a folder of SRTM tiles, or a file by its ending, in either case, or by its content if that is
+/// a TIFF or a PNG.
 pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
+    if path.is_dir() {
+        return hgt_folder::load(path);
+    }
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if matches!(ending.as_str(), "hdr" | "bil" | "bsq" | "dem") {
         return esri::load(path);

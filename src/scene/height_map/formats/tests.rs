@@ -197,7 +197,7 @@ fn contradictions_between_header_and_data_are_named() {
         ),
         (
             ("NCOLS          120", "NCOLS 0"),
-            "cannot load height map map.bil: by NCOLS and NROWS of its header, it has 0 x 91 samples; a map has 2 to 16384 a side",
+            "cannot load height map map.bil: by NCOLS and NROWS of its header, it has 0 x 91 samples; a map has 2 to 65536 a side",
         ),
         (
             ("NBITS          16", "NBITS 32"),

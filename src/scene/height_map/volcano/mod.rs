@@ -189,9 +189,9 @@ mod tests {
 
     #[test]
     fn sides_out_of_range_are_refused() {
-        for side in [0, 1, 16_385, u32::MAX] {
+        for side in [0, 1, 65_537, u32::MAX] {
             let message = volcano(side, 1).unwrap_err().to_string();
-            assert!(message.contains("2 to 16384 a side"), "{message}");
+            assert!(message.contains("2 to 65536 a side"), "{message}");
         }
         assert_eq!(volcano(2, 1).unwrap().samples().len(), 4);
     }

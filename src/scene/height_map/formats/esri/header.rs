@@ -39,7 +39,7 @@ pub(super) enum Kind {
     Float32,
 }
 
-/// Offsets and strides beyond this are no part of a map of 16,384 samples a side.
+/// Offsets and strides beyond this are no part of a map of 65,536 samples a side.
 const MAX_BYTES: u64 = 1 << 40;
 
 impl Header {

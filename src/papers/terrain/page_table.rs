@@ -1,0 +1,298 @@
+//! The tiles of a map's levels: which of them lie in the pool that the device holds, and what answers for the others.
+//!
+//! A tile that is not in the pool is answered for by the finest one over it that is. A texel of the highest values bounds all
+//! that it covers, so whatever is in the pool, a level's value is at least that of every finer one below it, and rays meet one
+//! surface: the data where they are held, elsewhere as high as the texel that stands for them.
+
+use super::parameters::Interpolation;
+use super::pyramid::{Bound, Shape};
+
+/// Binary logarithm of the columns and rows of a tile; `shaders/terrain/tiles.glsl` has it, too.
+const TILE_BITS: u32 = 7;
+/// Columns and rows of a tile.
+pub const TILE: u32 = 1 << TILE_BITS;
+/// Numbers before the pages: of each level the first page of the highest values, the data first, and from [`LOWEST`] on that of
+/// the lowest; at [`COLUMN_BITS`] the binary logarithm of the tiles in a row of the pool.
+pub const HEAD: usize = 64;
+const LOWEST: usize = 32;
+const COLUMN_BITS: usize = 31;
+
+/// A tile, by what it is a part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tile {
+    /// The highest values, or the lowest; the data are both.
+    pub bound: Bound,
+    /// Levels above the data.
+    pub shift: u32,
+    /// Its first column and row in its level.
+    pub origin: (u32, u32),
+}
+
+/// The tiles of one level.
+#[derive(Debug, Clone)]
+struct Grid {
+    bound: Bound,
+    shift: u32,
+    /// The number of its first tile; numbers rise row by row.
+    first: usize,
+    columns: u32,
+    rows: u32,
+    /// The grid of the next coarser level.
+    coarser: Option<usize>,
+}
+
+impl Grid {
+    fn count(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+}
+
+/// A tile that is to be copied to a place of the pool, both by their numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Load {
+    /// The tile.
+    pub tile: usize,
+    /// The place.
+    pub place: usize,
+}
+
+/// The tiles of a map's levels, the coarsest first, and the places of a pool that hold some of them.
+#[derive(Debug, Clone)]
+pub struct PageTable {
+    grids: Vec<Grid>,
+    column_bits: u32,
+    /// Of each tile the place that holds it.
+    places: Vec<Option<usize>>,
+    /// Of each place its tile.
+    tiles: Vec<Option<usize>>,
+    /// Of each place the last exchange that its tile was asked in.
+    asked_in: Vec<u64>,
+    exchanges: u64,
+    missing: usize,
+}
+
+/// Places that any pool has beside those of the tiles that are always held.
+const FEW: usize = 4;
+
+/// The number of grids of one tile, which come first.
+fn always(grids: &[Grid]) -> usize {
+    grids.iter().take_while(|grid| grid.count() == 1).count()
+}
+
+impl PageTable {
+    /// Of a pool with room for `most` tiles, for as many as there are, or for those that are always held and a few more.
+    pub fn new(shape: Shape, interpolation: Interpolation, most: usize) -> Self {
+        let mut grids: Vec<Grid> = Vec::new();
+        for shift in (0..=shape.top).rev() {
+            let (width, height) = shape.level(shift);
+            let bounds: &[Bound] = match interpolation {
+                Interpolation::Bicubic if shift > 0 => &[Bound::Highest, Bound::Lowest],
+                _ => &[Bound::Highest],
+            };
+            for &bound in bounds {
+                let first = grids.last().map_or(0, |last| last.first + last.count());
+                let coarser = grids.iter().rposition(|grid| grid.bound == bound);
+                let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
+                grids.push(Grid { bound, shift, first, columns, rows, coarser });
+            }
+        }
+        let count = grids.last().map_or(0, |last| last.first + last.count());
+        let most = most.max(always(&grids) + FEW);
+        let column_bits = most.min(count).max(1).ilog2() / 2;
+        let rows = count.div_ceil(1 << column_bits).min(most >> column_bits);
+        let places = rows << column_bits;
+        PageTable {
+            grids,
+            column_bits,
+            places: vec![None; count],
+            tiles: vec![None; places],
+            asked_in: vec![0; places],
+            exchanges: 0,
+            missing: 0,
+        }
+    }
+
+    /// Columns and rows of the pool, in tiles.
+    pub fn pool(&self) -> (u32, u32) {
+        (1 << self.column_bits, (self.tiles.len() >> self.column_bits) as u32)
+    }
+
+    /// Column and row of a place in the pool, in texels.
+    pub fn origin(&self, place: usize) -> (u32, u32) {
+        let column = place & ((1 << self.column_bits) - 1);
+        ((column as u32) << TILE_BITS, ((place >> self.column_bits) as u32) << TILE_BITS)
+    }
+
+    /// The number of tiles that are always held: those of levels of one tile.
+    pub fn held_always(&self) -> usize {
+        always(&self.grids)
+    }
+
+    /// The number of tiles.
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The number of tiles that the pool holds.
+    pub fn held(&self) -> usize {
+        self.tiles.iter().flatten().count()
+    }
+
+    /// The number of tiles that were asked for in the last exchange and are not held.
+    pub fn missing(&self) -> usize {
+        self.missing
+    }
+
+    /// The tile of a number.
+    pub fn tile(&self, number: usize) -> Tile {
+        let after = self.grids.partition_point(|grid| grid.first <= number);
+        let Grid { bound, shift, first, columns, .. } = self.grids[after - 1];
+        let index = (number - first) as u32;
+        Tile { bound, shift, origin: (index % columns * TILE, index / columns * TILE) }
+    }
+
+    /// Gives places to the tiles that are asked for, whose numbers rise, as many as the pool has, the coarsest first. Those that
+    /// nothing asked for longest make room.
+    pub fn exchange(&mut self, asked: impl IntoIterator<Item = usize>) -> Vec<Load> {
+        self.exchanges += 1;
+        let always = self.held_always();
+        let mut wanted: Vec<usize> = (0..always).collect();
+        wanted.extend(asked.into_iter().filter(|&tile| tile >= always && tile < self.places.len()));
+        let (kept, without_room) = wanted.split_at(wanted.len().min(self.tiles.len()));
+        for place in kept.iter().filter_map(|&tile| self.places[tile]) {
+            self.asked_in[place] = self.exchanges;
+        }
+        let mut free: Vec<usize> =
+            (0..self.tiles.len()).filter(|&place| self.asked_in[place] < self.exchanges).collect();
+        free.sort_by_key(|&place| self.asked_in[place]);
+        let lacking = kept.iter().copied().filter(|&tile| self.places[tile].is_none());
+        let loads: Vec<Load> = lacking.zip(free).map(|(tile, place)| Load { tile, place }).collect();
+        for &Load { tile, place } in &loads {
+            if let Some(before) = self.tiles[place].replace(tile) {
+                self.places[before] = None;
+            }
+            self.places[tile] = Some(place);
+            self.asked_in[place] = self.exchanges;
+        }
+        self.missing = without_room.iter().filter(|&&tile| self.places[tile].is_none()).count();
+        loads
+    }
+
+    /// The head and the pages as `shaders/terrain/tiles.glsl` reads them.
+    pub fn pages(&self) -> Vec<u32> {
+        let mut pages = vec![0_u32; HEAD + self.places.len()];
+        pages[COLUMN_BITS] = self.column_bits;
+        for grid in &self.grids {
+            let first = (HEAD + grid.first) as u32;
+            let shift = grid.shift as usize;
+            match grid.bound {
+                Bound::Highest => pages[shift] = first,
+                Bound::Lowest => pages[LOWEST + shift] = first,
+            }
+            for index in 0..grid.count() {
+                let page = match (self.places[grid.first + index], grid.coarser.map(|coarser| &self.grids[coarser])) {
+                    (Some(place), _) => place as u32,
+                    // Before the first exchange nothing is held.
+                    (None, None) => 0,
+                    (None, Some(coarser)) => {
+                        let (x, y) = (index as u32 % grid.columns / 2, index as u32 / grid.columns / 2);
+                        // A level further up from here.
+                        pages[HEAD + coarser.first + (y * coarser.columns + x) as usize] + (1 << 24)
+                    }
+                };
+                pages[HEAD + grid.first + index] = page;
+            }
+        }
+        pages[LOWEST] = pages[0];
+        pages
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::terrain::pyramid::Pyramid;
+    use crate::scene::random::Random;
+
+    const SHAPE: Shape = Shape { width: 700, height: 391, top: 10 };
+
+    /// The page of a texel, as the shader finds it: the place that answers, and the levels up to it.
+    fn answer(pages: &[u32], (bound, shift): (Bound, u32), (x, y): (u32, u32)) -> (usize, u32) {
+        let head = if bound == Bound::Lowest { LOWEST } else { 0 };
+        let columns = (((SHAPE.width - 1) >> shift) >> TILE_BITS) + 1;
+        let page = pages[head + shift as usize] + (y >> TILE_BITS) * columns + (x >> TILE_BITS);
+        (pages[page as usize] as usize & 0xff_ffff, pages[page as usize] >> 24)
+    }
+
+    /// Whatever the pool holds, a texel's value is that of its own level or a coarser one over it, and bounds those below it.
+    #[test]
+    fn levels_bound_each_other_whatever_is_held() {
+        let mut random = Random::new(11);
+        let data: Vec<u16> = (0..SHAPE.width * SHAPE.height).map(|_| (random.unit() * 60_000.0) as u16).collect();
+        let pyramids = [Bound::Highest, Bound::Lowest].map(|bound| Pyramid::build(SHAPE, &data, bound));
+        let mut table = PageTable::new(SHAPE, Interpolation::Bicubic, 40);
+        assert!(table.count() > 50 && table.held_always() == 16, "{} {}", table.count(), table.held_always());
+        let mut was_up = 0;
+        for round in 0..12 {
+            let asked: Vec<usize> = (0..table.count()).filter(|_| random.unit() < 0.05 * round as f32).collect();
+            table.exchange(asked.iter().copied());
+            let pages = table.pages();
+            let value = |bound: Bound, shift: u32, (x, y): (u32, u32)| {
+                let (place, up) = answer(&pages, (bound, shift), (x, y));
+                let tile = table.tile(table.tiles[place].unwrap());
+                let (x, y, level) = (x >> up, y >> up, shift + up);
+                // The data are their own lowest and highest values; what stands for them is the highest.
+                assert!(tile.shift == level && (tile.bound == bound || shift == 0), "{tile:?} for level {shift}");
+                assert_eq!((x & !(TILE - 1), y & !(TILE - 1)), tile.origin);
+                let columns = SHAPE.level(level).0;
+                let pyramid = &pyramids[usize::from(tile.bound == Bound::Lowest)];
+                let texels = pyramid.level(level).unwrap_or(&data);
+                (texels[(y * columns + x) as usize], up)
+            };
+            for shift in 1..=SHAPE.top {
+                let (width, height) = SHAPE.level(shift - 1);
+                for _ in 0..400 {
+                    let below = ((random.unit() * width as f32) as u32, (random.unit() * height as f32) as u32);
+                    let over = (below.0 >> 1, below.1 >> 1);
+                    let (finer, up) = value(Bound::Highest, shift - 1, below);
+                    assert!(value(Bound::Highest, shift, over).0 >= finer);
+                    assert!(value(Bound::Lowest, shift, over).0 <= value(Bound::Lowest, shift - 1, below).0);
+                    was_up = was_up.max(up);
+                }
+            }
+        }
+        assert!(was_up >= 2, "nothing was answered for by a level far above: {was_up}");
+    }
+
+    #[test]
+    fn the_coarsest_come_first_and_the_longest_unasked_make_room() {
+        let mut table = PageTable::new(SHAPE, Interpolation::Bilinear, 20);
+        let (always, places) = (table.held_always(), table.tiles.len());
+        assert_eq!((always, places, table.pool()), (8, 20, (4, 5)));
+        assert_eq!(table.exchange([]).len(), always);
+        // All that there is: what has no room is the end of the list, the finest.
+        let loads = table.exchange(0..table.count());
+        assert_eq!(loads.iter().map(|load| load.tile).collect::<Vec<_>>(), (always..places).collect::<Vec<_>>());
+        assert_eq!((table.held(), table.missing()), (places, table.count() - places));
+        // Nothing new, nothing to do.
+        assert!(table.exchange(0..table.count()).is_empty());
+        // The first of the rest is still asked for; another takes the place of one that is not.
+        table.exchange([always]);
+        let loads = table.exchange([always, table.count() - 1]);
+        assert_eq!(loads.len(), 1);
+        assert!(table.places[always].is_some() && table.missing() == 0);
+        assert_eq!(table.places[table.count() - 1], Some(loads[0].place));
+        // No two tiles have one place, and both lists agree.
+        for (place, tile) in table.tiles.iter().enumerate() {
+            assert_eq!(tile.and_then(|tile| table.places[tile]), Some(place));
+        }
+    }
+
+    #[test]
+    fn a_pool_is_no_larger_than_the_map_and_its_room() {
+        for (most, expected) in [(1, (2, 6)), (14, (2, 7)), (20, (4, 5)), (1 << 20, (4, 10))] {
+            let table = PageTable::new(SHAPE, Interpolation::Bilinear, most);
+            assert_eq!(table.pool(), expected, "{most} of {}", table.count());
+        }
+    }
+}

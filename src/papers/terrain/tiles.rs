@@ -1,0 +1,190 @@
+//! The levels of a map in tiles: all on the processor, on the device a pool of those that rays asked for.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use ash::vk;
+
+use super::height_field::{Field, FieldWork, HeightField};
+use super::page_table::{HEAD, PageTable, TILE, Tile};
+use super::parameters::Interpolation;
+use super::pyramid::{Cover, Shape, Texel};
+use crate::gpu::bindings::Resource;
+use crate::gpu::transfer::{read_buffer, update, upload, upload_rectangle};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location};
+use crate::scene::{HeightMap, Samples};
+
+/// Exchanges after which a picture is shown with what its pool has: tiles that a pool has no room for can ask for each other in
+/// turn.
+const MOST_EXCHANGES: u32 = 64;
+
+/// Numbers of the tiles of one map, or of several.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TileCounts {
+    /// All that there are.
+    pub tiles: usize,
+    /// Those that the pool holds.
+    pub held: usize,
+    /// Those that the last picture asked for and the pool has no room for.
+    pub missing: usize,
+    /// Those that were copied to the device so far.
+    pub loaded: u64,
+    /// Pictures so far after which tiles were copied.
+    pub exchanges: u32,
+    /// Milliseconds of looking for what is asked for and of copying it.
+    pub loading_ms: f64,
+}
+
+impl TileCounts {
+    /// Of both together.
+    pub fn and(self, other: Self) -> Self {
+        TileCounts {
+            tiles: self.tiles + other.tiles,
+            held: self.held + other.held,
+            missing: self.missing + other.missing,
+            loaded: self.loaded + other.loaded,
+            exchanges: self.exchanges.max(other.exchanges),
+            loading_ms: self.loading_ms + other.loading_ms,
+        }
+    }
+}
+
+/// A map's levels of which the device holds a pool of tiles.
+pub struct Tiles {
+    /// The pool.
+    pub view: Arc<ImageView>,
+    pages: Arc<Buffer>,
+    /// A number for each page, 1 where it was read.
+    asked: Arc<Buffer>,
+    staging: Arc<Buffer>,
+    field: HeightField,
+    table: PageTable,
+    loaded: u64,
+    exchanges: u32,
+    loading_ms: f64,
+    /// Exchanges since the last picture that lacked nothing.
+    in_a_row: u32,
+}
+
+impl Tiles {
+    /// Builds the levels on the processor and makes a pool of at most `bytes`, or one for the coarsest levels and little more.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a pool that is larger than the device's images; errors of the Vulkan layer.
+    pub fn new(
+        device: &Arc<Device>,
+        label: &str,
+        map: &Arc<HeightMap>,
+        (interpolation, bytes): (Interpolation, u64),
+    ) -> Result<Self, Error> {
+        let (format, texel_bytes) = match map.samples() {
+            Samples::Steps { .. } => (vk::Format::R16_UINT, 2),
+            Samples::Float(_) => (vk::Format::R32_UINT, 4),
+        };
+        let tile_bytes = u64::from(TILE * TILE) * texel_bytes;
+        let shape = Shape::new(map.width(), map.height());
+        let table = PageTable::new(shape, interpolation, (bytes / tile_bytes) as usize);
+        let (columns, rows) = table.pool();
+        let desc = ImageDesc::new_2d(format!("{label}/tiles"), format, columns * TILE, rows * TILE);
+        let view = Image::new(device, desc.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
+        let pages = table.pages();
+        let buffer = |name: &str, numbers: &[u32]| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            upload(device, &format!("{label}/{name}"), usage, bytemuck::cast_slice(numbers))
+        };
+        let desc = BufferDesc::new(format!("{label}/tile"), tile_bytes).location(Location::Upload);
+        let mut tiles = Tiles {
+            view,
+            pages: buffer("pages", &pages)?,
+            asked: buffer("asked", &vec![0; pages.len()])?,
+            staging: Buffer::new(device, desc)?,
+            field: HeightField::new(map, interpolation, Cover::Nodes),
+            table,
+            loaded: 0,
+            exchanges: 0,
+            loading_ms: 0.0,
+            in_a_row: 0,
+        };
+        tiles.bring(&[])?;
+        Ok(tiles)
+    }
+
+    /// All that `shaders/terrain/tiles.glsl` reads and writes.
+    pub fn resources(&self) -> [(&'static str, Resource); 3] {
+        [("pool", (&self.view).into()), ("pages", (&self.pages).into()), ("asked", (&self.asked).into())]
+    }
+
+    /// Copies to the pool what the frames since the last exchange asked for. True where nothing was left to copy, so that they
+    /// showed all that the pool has room for.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn exchange(&mut self) -> Result<bool, Error> {
+        let start = Instant::now();
+        let bytes = read_buffer(self.view.image().device(), &self.asked)?;
+        let marks = bytemuck::pod_collect_to_vec::<u8, u32>(&bytes);
+        let asked: Vec<usize> =
+            (0..).zip(&marks[HEAD..]).filter(|(_, mark)| **mark != 0).map(|(tile, _)| tile).collect();
+        update(&self.asked, &vec![0; bytes.len()])?;
+        let brought = self.bring(&asked)?;
+        if brought > 0 {
+            self.exchanges += 1;
+            self.in_a_row += 1;
+        }
+        self.loading_ms += start.elapsed().as_secs_f64() * 1e3;
+        let is_settled = brought == 0 || self.in_a_row >= MOST_EXCHANGES;
+        if is_settled {
+            self.in_a_row = 0;
+        }
+        Ok(is_settled)
+    }
+
+    /// Copies those tiles to the pool that it lacks, as far as it has room, and gives their number.
+    fn bring(&mut self, asked: &[usize]) -> Result<usize, Error> {
+        let loads = self.table.exchange(asked.iter().copied());
+        for load in &loads {
+            let texels = self.field.with(Texels(self.table.tile(load.tile)));
+            self.staging.write(0, &texels)?;
+            upload_rectangle(&self.staging, &self.view, self.table.origin(load.place), (TILE, TILE))?;
+        }
+        if !loads.is_empty() {
+            update(&self.pages, bytemuck::cast_slice(&self.table.pages()))?;
+        }
+        self.loaded += loads.len() as u64;
+        Ok(loads.len())
+    }
+
+    /// The tiles so far.
+    pub fn counts(&self) -> TileCounts {
+        TileCounts {
+            tiles: self.table.count(),
+            held: self.table.held(),
+            missing: self.table.missing(),
+            loaded: self.loaded,
+            exchanges: self.exchanges,
+            loading_ms: self.loading_ms,
+        }
+    }
+}
+
+/// The texels of a tile as bytes, row by row; those beyond the level are zero.
+struct Texels(Tile);
+
+impl FieldWork for Texels {
+    type Output = Vec<u8>;
+
+    fn run<T: Texel>(self, field: Field<'_, T>) -> Vec<u8> {
+        let Tile { bound, shift, origin } = self.0;
+        let (width, height) = field.shape().level(shift);
+        let columns = (width - origin.0).min(TILE) as usize;
+        let row_bytes = TILE as usize * size_of::<T>();
+        let mut bytes = vec![0; TILE as usize * row_bytes];
+        let level = field.level(bound, shift);
+        for (row, bytes) in (origin.1..height).zip(bytes.chunks_exact_mut(row_bytes)) {
+            let first = row as usize * width as usize + origin.0 as usize;
+            let texels: &[u8] = bytemuck::cast_slice(&level[first..first + columns]);
+            bytes[..texels.len()].copy_from_slice(texels);
+        }
+        bytes
+    }
+}

@@ -1,0 +1,82 @@
+//! `terrain` of maps in tiles through the binary: what the record says of them, and what has no room.
+
+use super::program::{ONCE, entries, folder};
+use super::terrain::small;
+
+/// The measurement waits until no tile is missing, and says how many there are and how long that took.
+#[test]
+fn a_measurement_waits_for_all_tiles() {
+    let bench = "bench --json --quiet --resolution 1025 --tile-memory 2 --variant gpu-compute,tiled-compute";
+    let report = small(bench).args(ONCE).run().succeeded().json();
+    let runs = report["runs"].as_array().unwrap();
+    let (whole, tiled) = (&runs[0], &runs[1]);
+    assert!(whole["results"]["tiles"].is_null(), "{}", whole["results"]);
+    let tiles = &tiled["results"]["tiles"];
+    let number = |name: &str| tiles[name].as_u64().unwrap_or_else(|| panic!("no {name} in {tiles}"));
+    assert_eq!((number("tiles"), number("missing")), (127, 0));
+    assert!((8..=64).contains(&number("held")) && number("loaded") >= number("held"), "{tiles}");
+    assert!(number("exchanges") >= 1 && tiles["loading_ms"].as_f64().unwrap() > 0.0, "{tiles}");
+    for same in ["steps_per_ray", "hit_share", "levels"] {
+        assert_eq!(whole["results"][same], tiled["results"][same], "{same}");
+    }
+    assert_eq!(tiled["config"]["tile_memory"], 2);
+    let bytes = |run: &serde_json::Value, name: &str| {
+        let all = run["memory"]["by_resource"].as_array().unwrap();
+        all.iter()
+            .filter(|of| of["name"].as_str().unwrap().contains(name))
+            .map(|of| of["bytes"].as_u64().unwrap())
+            .sum::<u64>()
+    };
+    let (levels, pool) = (bytes(whole, "/levels"), bytes(tiled, "/tiles"));
+    assert!(levels > 4 << 20 && pool > 1 << 20 && pool <= 5 << 19, "{levels} and {pool} bytes");
+}
+
+/// Pictures of both variants are one; a pool that is too small for a picture is told of.
+#[test]
+fn pools_without_room_are_told_of() {
+    let out = folder();
+    let render = |options: &str| {
+        let render = format!("render --resolution 1025 --lod exact --camera top {options}");
+        small(&render).inside(out.path()).run()
+    };
+    render("--variant gpu-compute --image whole.png").succeeded();
+    let tiled = render("--variant tiled-compute --tile-memory 8 --image tiled.png").succeeded();
+    assert!(!tiled.stderr.contains("tile-memory"), "{}", tiled.stderr);
+    let read = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+    assert!(read("whole.png") == read("tiled.png"));
+    // Of four maps each has the coarsest levels all the same.
+    let four = "--map volcano --map volcano --map volcano --map volcano";
+    for options in ["", four] {
+        let lacking =
+            render(&format!("{options} --variant tiled-compute --tile-memory 1 --image small.png")).succeeded();
+        assert!(
+            lacking.stderr.contains("lack room") && lacking.stderr.contains("raise --tile-memory"),
+            "{}",
+            lacking.stderr
+        );
+    }
+    render("--variant tiled-compute --tile-memory 0 --image none.png").refused(2, &["--tile-memory 0", "1 to 65536"]);
+}
+
+/// Every stall of a flight is counted, and no picture is shown with a hole.
+#[test]
+fn a_flight_counts_its_stalls() {
+    let out = folder();
+    let flight = "experiment flight --resolution 1025 --lod exact --tile-memory 2 --frames 5 --out .";
+    let path = "--camera=-4500,1500,4500,-4000,0,3500 --to=4000,1500,-2500,4500,0,-3500";
+    let ended = small(flight).args(path).inside(out.path()).run().succeeded();
+    assert!(ended.stderr.contains("of 5 pictures waited for tiles"), "{}", ended.stderr);
+    assert_eq!(entries(out.path()), ["terrain-flight.csv", "terrain-flight.json", "terrain-flight.svg"]);
+    let text = std::fs::read_to_string(out.path().join("terrain-flight.csv")).unwrap();
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(head, ["picture", "frame ms", "stalls", "stall ms", "tiles loaded", "tiles held", "tiles missing"]);
+    let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 5);
+    for row in &rows {
+        assert!(row[1] > 0.0 && row[5] <= 64.0 && row[6] == 0.0, "{row:?}");
+        assert!((row[2] > 0.0) == (row[3] > 0.0) && (row[2] > 0.0) == (row[4] > 0.0), "{row:?}");
+    }
+    assert!(rows.iter().filter(|row| row[2] > 0.0).count() >= 2, "{rows:?}");
+    small("experiment flight --counts 3").run().refused(2, &["--counts", "this experiment has none"]);
+}
