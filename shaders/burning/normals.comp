@@ -4,7 +4,8 @@
 
 // Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the
 // colour of its charring: the albedo of what chars fades from the initial boundary to the deformed area, and what has
-// just reached combustion glows; metal glows while the fire is near it.
+// just reached combustion glows; metal glows while the fire is near it. Ours, by the natural look: what is charred and
+// still burns glows in patches that wander upwards.
 
 layout(local_size_x = 64) in;
 
@@ -13,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "burning/clock.glsl"
 #include "burning/substances.glsl"
 #include "burning/vertices.glsl"
+#include "burning/wood.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
     RestVertex rest[];
@@ -70,6 +72,16 @@ layout(set = 0, binding = 82, std430) readonly buffer SubstanceOf {
 
 const vec3 CHAR = vec3(0.02);
 
+const float PATCHES = 22.0; // a diagonal
+const float WANDER = 17.0; // patches of it a minute
+
+// Of char that burns: the less, the less of it is left.
+float ember(vec3 place, float left_fraction) {
+    float time_s = float(clock.tick) / 60.0;
+    float patched = smoothstep(0.35, 0.7, wood_noise(PATCHES * place - vec3(0.0, WANDER / 60.0 * time_s, 0.0)));
+    return patched * left_fraction;
+}
+
 // The sum of (b - a) x (c - a) over the triangles that are still there, or over all of them.
 vec3 area_vectors(uint from, uint to, bool with_removed) {
     vec3 sum = vec3(0.0);
@@ -113,6 +125,9 @@ void main() {
     float distance_to_boundary = rest[welds[corner]].boundary_distance;
     float charred = clamp((r - distance_to_boundary) / (2.0 * width), 0.0, 1.0);
     float glow = max(0.0, 1.0 - abs(distance_to_boundary - (r - width)) / (0.5 * width));
+    // No branch: drivers compile a shader anew for each value that a branch on constants sees.
+    float is_char = constants.embers * step(1.0, charred);
+    glow = max(glow, is_char * ember(rest[welds[corner]].position, mapped[welds[corner]].left_fraction));
     normals[corner] = vec4(normal, charred);
 #ifdef SURFACE_SEVERAL
     Appearance own = substances[substance_of[corner]];

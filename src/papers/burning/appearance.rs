@@ -36,9 +36,15 @@ impl Parameters {
         })
     }
 
+    /// True where consumed triangles leave the drawn stream: those of solids by the natural look alone.
+    pub fn removes(&self, variant: Variant) -> bool {
+        let burns_away = self.look == Look::Natural && self.burn_away && variant == Variant::Solid;
+        variant.removes() || burns_away
+    }
+
     /// True where parts that nothing holds fall.
     pub fn collapses(&self, variant: Variant) -> bool {
-        self.look == Look::Natural && self.collapse && variant.removes()
+        self.look == Look::Natural && self.collapse && self.removes(variant)
     }
 
     /// True where what melts gathers in a puddle.

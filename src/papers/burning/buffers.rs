@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::chunks::ChunkBuffers;
 use super::materials::MaterialLevels;
 use super::model::{Chunks, Model};
-use super::parameters::{Parameters, TICKS_PER_S, Variant};
+use super::parameters::{Look, Parameters, TICKS_PER_S, Variant};
 use crate::gpu::transfer::{copy_buffers, upload};
 use crate::gpu::{Buffer, BufferDesc, Device, Error, ShaderLibrary};
 use crate::host_block;
@@ -51,6 +51,9 @@ host_block! {
         charring: f32,
         wind: Vec3,
         evaporation_per_tick: f32,
+        embers: f32,
+        setting_per_tick: f32,
+        _pad: [f32; 2],
     }
 }
 
@@ -381,6 +384,7 @@ fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
 fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Constants {
     let p = parameters;
     let tick_s = 1.0 / TICKS_PER_S;
+    let is_natural = p.look == Look::Natural;
     Constants {
         blocks: p.blocks,
         block_count: model.block_count(),
@@ -416,6 +420,9 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         charring: if p.chars(variant) { 1.0 } else { 0.0 },
         wind: p.wind,
         evaporation_per_tick: (f64::from(p.evaporation_per_s) * tick_s) as f32,
+        embers: if is_natural && (p.chars(variant) || p.materials.is_some()) { 1.0 } else { 0.0 },
+        setting_per_tick: if is_natural { (tick_s / f64::from(p.setting_s)) as f32 } else { 0.0 },
+        _pad: [0.0; 2],
     }
 }
 

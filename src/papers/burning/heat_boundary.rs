@@ -43,7 +43,7 @@ pub fn heat_boundary(
     let vertices = labelled("heat-boundary-vertices").with("Rest", &buffers.rest);
     let vertices = vertex_chunks.changing(vertices).with("Finished", &vertex_chunks.finished);
     // What is kept for its neighbours' sake stays open until it leaves; without that a triangle leaves as the last of it burns out.
-    let triangles = match variant.removes() && parameters.keep_connected && parts.is_none() {
+    let triangles = match parameters.removes(variant) && parameters.keep_connected && parts.is_none() {
         true => labelled("heat-boundary-triangles-leaves").with("Removed", &buffers.removed),
         false => labelled("heat-boundary-triangles-stays"),
     };

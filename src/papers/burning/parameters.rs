@@ -51,7 +51,7 @@ impl Variant {
         matches!(self, Variant::LowPoly | Variant::Solid | Variant::Melting)
     }
 
-    /// True where consumed triangles leave the drawn stream (3.5.4); a solid's and a melting object's stay.
+    /// True where consumed triangles leave the drawn stream (3.5.4); in the text a solid's and a melting object's stay.
     pub fn removes(self) -> bool {
         matches!(self, Variant::Shell | Variant::LowPoly | Variant::FullySubdivided)
     }
@@ -123,8 +123,12 @@ pub struct Parameters {
     pub look: Look,
     /// Lets parts that nothing holds fall, of the natural look.
     pub collapse: bool,
+    /// Lets what has burnt out of a solid leave as ash, of the natural look, as the rest does; in the text it stays.
+    pub burn_away: bool,
     /// Draws the ground, of the natural look.
     pub ground: bool,
+    /// Time in which wax that has burnt out loses its motion, of the natural look.
+    pub setting_s: f32,
     /// Height of the puddle of what melts that evaporates in a second, of the natural look.
     pub evaporation_per_s: f32,
     /// Most fire particles.
@@ -201,7 +205,9 @@ impl Default for Parameters {
             keep_connected: true,
             look: Look::Natural,
             collapse: true,
+            burn_away: true,
             ground: true,
+            setting_s: 4.0,
             evaporation_per_s: 0.0,
             fire: 3000,
             smoke: 1800,
@@ -255,6 +261,8 @@ const PRELOAD: &str = "Load what never changes before the first frame, or again 
 const KEEP_CONNECTED: &str =
     "Never leave a block that has weight without neighbours, or let pieces come off; off where parts fall";
 const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
+const SETTING: &str = "melting: wax that has burnt out comes to rest in this time, of the natural look";
+const BURN_AWAY: &str = "solid: let what has burnt out leave as ash, of the natural look, or stay as char";
 const COLLAPSE: &str = "Let parts that nothing holds fall, of the natural look, or leave them in place";
 
 /// A field of [`Parameters`].
@@ -335,6 +343,8 @@ impl Parameters {
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
             row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines).everyday(),
             row("collapse", p!(collapse), any, COLLAPSE, "").cost(Cost::Pipelines),
+            row("burn-away", p!(burn_away), any, BURN_AWAY, "").cost(Cost::Pipelines),
+            row("setting", p!(setting_s), R::above(0.0).to(1e4), SETTING, "").unit("seconds"),
             row(
                 "evaporation",
                 p!(evaporation_per_s),

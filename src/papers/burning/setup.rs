@@ -69,6 +69,9 @@ impl Default for Setup {
     }
 }
 
+/// Parameters that change what is drawn alone: a change of them takes effect with the next frame.
+pub const DRAWN: [&str; 4] = ["camera", "exposure", "fire-light", "tone"];
+
 /// Bytes on the device of a triangle of a mesh whose vertices are shared, at least.
 pub(super) const LEAST_BYTES: f64 = 172.0;
 
@@ -193,7 +196,7 @@ impl Study for Setup {
     }
 
     fn reconfigure(&self, _: &Scene, paper: &mut Burning, changed: &Given) -> Result<bool, Error> {
-        if !changed.is_within(&["camera", "fire-light", "exposure", "tone"]) {
+        if !changed.is_within(&DRAWN) {
             return Ok(false);
         }
         self.check()?;

@@ -105,7 +105,7 @@ impl SurfaceRemoval {
         let write = over_all(write).with("Corners", &buffers.corners).with("Stream", &buffers.stream).build(shaders)?;
         Ok(SurfaceRemoval {
             steps: marks.map(|mark| Pass::steps([mark, count.clone(), scan.clone(), write.clone()])),
-            removes: variant.removes(),
+            removes: parameters.removes(variant),
             runs,
             leaves: refinement.map(|refinement| Leaves { level_of_detail: refinement.level_of_detail }),
         })

@@ -100,7 +100,7 @@ impl Surface {
 
 /// With all its levels a picture of this side fills an image of 16,384 texels a side, which devices of this size of
 /// image take; others name their limit.
-const LARGEST_SIDE: u32 = 8192;
+pub(super) const LARGEST_SIDE: u32 = 8192;
 
 /// Reads a PNG and makes its levels.
 ///

@@ -7,14 +7,16 @@ use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::transfer::read_image;
 use fumarole::image::{Rgba8, compare, srgb};
 use fumarole::measure::Paper;
+use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::flames::Particle;
-use fumarole::papers::burning::reference::lights::{Light, irradiance, lights};
+use fumarole::papers::burning::reference::lights::{Light, ember, irradiance, lights};
 use fumarole::papers::burning::{FireLight, Parameters, Particle as DeviceParticle, Tone, Variant};
 use fumarole::papers::lava::reference::toned;
-use fumarole::scene::Mesh;
+use fumarole::scene::{Mesh, shapes};
 use glam::{DVec3, DVec4};
 use half::f16;
 
+use super::dump;
 use super::fire::{Fire, ball};
 use crate::common::gpu_test;
 
@@ -127,6 +129,34 @@ fn the_ground_has_the_light_of_the_flames() {
             }
         }
         assert!(seen > 100 && brightest > 0.1, "{seen} pixels of ground, {brightest}");
+    });
+}
+
+#[test]
+fn char_glows_while_it_burns() {
+    gpu_test(|device| {
+        let mesh = with_triangles(&shapes::sphere(32, 32), 4000);
+        let fire = first_picture(device, Variant::Shell, &burning(), &mesh);
+        let state = dump::state(&fire, true);
+        let counts = fire.paper.counts().unwrap();
+        let [mapped, colors] =
+            [&fire.paper.buffers().mapped, &fire.paper.buffers().colors].map(|list| fire.read::<[f32; 4]>(list));
+        let rest = &fire.paper.model().rest;
+        let (mut glowing, mut dark) = (0, 0);
+        for (&vertex, color) in fire.paper.model().lattice.welds.iter().zip(&colors) {
+            let vertex = vertex as usize;
+            let behind = counts.radius - rest[vertex].boundary_distance;
+            // Beyond the edge that glows by itself.
+            if behind < 0.081 || !state.alive[vertex] {
+                continue;
+            }
+            let left = f64::from(mapped[vertex][3]);
+            let expected = ember(rest[vertex].position.as_dvec3(), left, f64::from(counts.tick) / 60.0);
+            assert!((f64::from(color[3]) - expected).abs() < 1e-3, "{vertex}: {} {expected}", color[3]);
+            assert!(left > 0.0 || color[3] == 0.0, "what has burnt out is dark");
+            *(if color[3] > 0.1 { &mut glowing } else { &mut dark }) += 1;
+        }
+        assert!(glowing > 50 && dark > 50, "{glowing} {dark}");
     });
 }
 

@@ -7,7 +7,7 @@ use fumarole::gpu::Compiler;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::refinement::Pattern;
 use fumarole::papers::burning::reference::{Node, State, boundary};
-use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::burning::{Heat, Look, Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{DVec3, Vec2, Vec3};
 
@@ -299,6 +299,10 @@ fn solid() {
 #[test]
 fn melting() {
     compare(Variant::Melting, &Parameters { levels: Some(0), ..parameters() }, &bunny());
+    // By the natural look it sets.
+    let (look, heat) = (Look::Natural, Some(Heat::Air));
+    let sets = Parameters { levels: Some(0), look, heat, setting_s: 0.5, ..parameters() };
+    compare(Variant::Melting, &sets, &bunny());
     // Lit in the middle: structures above it turn.
     let sources = vec![Vec3::new(0.0, 0.2, 0.25), Vec3::new(-0.2, 0.1, 0.0)];
     let parameters = Parameters { levels: Some(3), sources, ..parameters() };

@@ -82,6 +82,10 @@ fn mesh_and_puddle_keep_their_volume_and_come_to_rest() {
             let moved: u64 =
                 Puddle::of(&fire).heights.iter().zip(&before).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
             assert!(moved as f64 * UNIT < 5e-3 * start, "mesh {at}: {moved}");
+            // The mesh has set: nothing of it moves at all.
+            let set = fire.state().vertices;
+            fire.ticks(6);
+            assert!(fire.state().vertices == set, "mesh {at} moves");
         }
     });
 }

@@ -1,10 +1,10 @@
-//! Solids (chapter 5): they burn inwards, and nothing of their surface leaves.
+//! Solids (chapter 5): they burn inwards, and nothing of their surface leaves; by the natural look they burn to ash.
 
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
 use fumarole::papers::burning::model::with_triangles;
-use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::burning::{Look, Parameters, Variant};
 use fumarole::scene::{Mesh, shapes};
 
 use super::fire::{Fire, State, ball, quick};
@@ -38,6 +38,30 @@ fn the_enclosed_volume_shrinks_and_stays_positive_and_no_triangle_leaves() {
             let shares = burn(device, &parameters, &ball());
             assert!(shares.iter().all(|share| *share > 0.0 && *share < 1.001), "{shares:?}");
             assert!(shares.last().is_some_and(|&share| share < 0.99), "{shares:?}");
+        }
+    });
+}
+
+#[test]
+fn by_the_natural_look_a_solid_burns_to_ash() {
+    gpu_test(|device| {
+        for burn_away in [true, false] {
+            let parameters = Parameters { look: Look::Natural, burn_away, ..quick() };
+            let mut fire = Fire::new(device, Variant::Solid, &parameters, &ball());
+            assert_eq!(fire.paper.parts().is_some(), burn_away, "what falls comes off");
+            let mut removed = vec![0];
+            while fire.state().vertices.iter().any(|vertex| vertex.left > 0.0) {
+                fire.ticks(20);
+                removed.push(fire.state().counts.removed_triangles);
+                assert!(removed.len() < 100, "it burns out");
+            }
+            fire.ticks(20);
+            let all = fire.paper.model().triangle_count();
+            let last = fire.state().counts.removed_triangles;
+            assert!(removed.is_sorted() && last == if burn_away { all } else { 0 }, "{last} of {all}: {removed:?}");
+            // Little by little.
+            let some = removed.iter().filter(|count| **count > 0 && **count < all).count();
+            assert!(!burn_away || some > 2, "{removed:?}");
         }
     });
 }

@@ -60,7 +60,7 @@ fn the_passes_follow_the_chapters() {
         let draw = passes.iter().position(|pass| *pass == "draw").unwrap();
         passes.insert(draw, "flame-lights");
         passes.push("tone");
-        if ["shell", "low-poly", "fully-subdivided"].contains(&variant) {
+        if variant != "melting" {
             passes.splice(flames..flames, ["parts", "falling"]);
         }
         assert_eq!(names(&listed["passes"]), passes, "{variant}");

@@ -62,7 +62,7 @@ fn what_is_declared_as_constants_is_what_a_paper_takes_over() {
     assert_eq!(constants::<lava::setup::Setup>(), lava::DRAWN);
     assert_eq!(constants::<gas::setup::Setup>(), gas::WRITTEN);
     assert_eq!(constants::<caustics::setup::Setup>(), caustics::DRAWN);
-    assert_eq!(constants::<burning::setup::Setup>(), ["camera"]);
+    assert_eq!(constants::<burning::setup::Setup>(), burning::setup::DRAWN);
     assert_eq!(constants::<terrain::setup::Setup>(), terrain::WRITTEN);
 }
 
@@ -71,7 +71,7 @@ fn constants_that_a_paper_takes_over_are_seen_without_building() {
     beside_others(|| {
         let water: &[(&str, &str)] = &[("absorption", "0.7"), ("fresnel", "true")];
         type Changes = [(&'static str, &'static str)];
-        let cases: [(&str, &str, &Changes); 6] = [
+        let cases: [(&str, &str, &Changes); 7] = [
             (
                 "lava",
                 "",
@@ -100,6 +100,11 @@ fn constants_that_a_paper_takes_over_are_seen_without_building() {
             ("caustics", "", &[water[0], water[1], ("samples", "2"), ("time-step", "0.3")]),
             ("caustics", "--variant culled", water),
             ("caustics", "--variant stencil", water),
+            (
+                "burning",
+                "",
+                &[("exposure", "0.5"), ("fire-light", "9"), ("tone", "clip"), ("camera", elsewhere("burning"))],
+            ),
             ("terrain", "", &[("haze", "0.2"), ("normals", "nodes"), ("sun", "120,20"), ("camera", "top")]),
         ];
         for (paper, more, changes) in cases {

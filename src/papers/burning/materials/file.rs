@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::super::texture::LARGEST_SIDE;
 use super::{Kind, Materials, Substance};
+use crate::image::{Rgba8, read_png_within};
 use crate::measure::Error;
 use crate::scene::Mesh;
 use crate::{content, file};
@@ -19,6 +21,8 @@ const MOST_MATERIALS: usize = 256;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
+    /// A PNG of colours, by the texture coordinates of the vertices, in place of their own; beside this file.
+    texture: Option<Spanned<String>>,
     #[serde(default)]
     material: Vec<Entry>,
 }
@@ -52,7 +56,16 @@ type Wrong = (Option<usize>, String);
 pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
     let cannot = |reason: String| Error::Input(format!("cannot use the materials {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| cannot(error.to_string()))?;
-    let parsed = parse(&text).and_then(|entries| assigned(&entries, mesh, &text));
+    let parsed = parse(&text).and_then(|document| {
+        let Some(texture) = &document.texture else {
+            return assigned(&document.material, mesh, &mesh.tags.colors, text.as_bytes());
+        };
+        let wrong = |reason: String| (Some(texture.span().start), reason);
+        let picture = path.with_file_name(texture.get_ref());
+        let picture = read_png_within(&picture, LARGEST_SIDE).map_err(|error| wrong(error.to_string()))?;
+        let colors = colors_of(&picture, mesh).map_err(wrong)?;
+        assigned(&document.material, mesh, &colors, &[text.as_bytes(), picture.pixels()].concat())
+    });
     parsed.map_err(|(at, reason)| match at {
         None => cannot(reason),
         Some(at) => {
@@ -62,7 +75,22 @@ pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
     })
 }
 
-fn parse(text: &str) -> Result<Vec<Entry>, Wrong> {
+/// The colour of a picture's texel at each vertex, as the file has it, 0 to 1; the picture repeats.
+fn colors_of(picture: &Rgba8, mesh: &Mesh) -> Result<Vec<Vec3>, String> {
+    if mesh.texture_coordinates.is_empty() {
+        return Err(format!("the mesh {} has no texture coordinates; name its parts", mesh.name));
+    }
+    let at = |share: f32, count: u32| ((share - share.floor()) * count as f32) as usize % count as usize;
+    let color = |coordinates: &Vec2| {
+        // (0, 0) is the lower left corner, the top row comes first.
+        let (column, row) = (at(coordinates.x, picture.width()), at(1.0 - coordinates.y, picture.height()));
+        let first = 4 * (row * picture.width() as usize + column);
+        Vec3::from([0, 1, 2].map(|channel| f32::from(picture.pixels()[first + channel]) / 255.0))
+    };
+    Ok(mesh.texture_coordinates.iter().map(color).collect())
+}
+
+fn parse(text: &str) -> Result<Document, Wrong> {
     let document: Document = toml::from_str(text).map_err(|error| {
         let reason = error.message().split_whitespace().collect::<Vec<_>>().join(" ").replace('`', "\"");
         (error.span().map(|span| span.start), reason)
@@ -74,7 +102,7 @@ fn parse(text: &str) -> Result<Vec<Entry>, Wrong> {
         let count = document.material.len();
         return Err((None, format!("it has {count} materials; {MOST_MATERIALS} are the most")));
     }
-    Ok(document.material)
+    Ok(document)
 }
 
 impl Entry {
@@ -128,8 +156,8 @@ fn fractions(name: &str, given: &Spanned<[f32; 3]>) -> Result<Vec3, Wrong> {
     Err((Some(given.span().start), format!("the numbers of {name} must be 0 to 1")))
 }
 
-/// The materials of the vertices.
-fn assigned(entries: &[Entry], mesh: &Mesh, text: &str) -> Result<Materials, Wrong> {
+/// The materials of the vertices, whose colours are `colors`; `content` is all that was read.
+fn assigned(entries: &[Entry], mesh: &Mesh, colors_of_vertices: &[Vec3], content: &[u8]) -> Result<Materials, Wrong> {
     let tags = &mesh.tags;
     let mut of_part: Vec<Option<u32>> = vec![None; tags.names.len()];
     let mut rest: Option<u32> = None;
@@ -149,8 +177,8 @@ fn assigned(entries: &[Entry], mesh: &Mesh, text: &str) -> Result<Materials, Wro
             }
         }
         if let Some(color) = &entry.color {
-            if tags.colors.is_empty() {
-                let reason = format!("the mesh {} has no colours of vertices; name its parts", mesh.name);
+            if colors_of_vertices.is_empty() {
+                let reason = format!("the mesh {} has no colours of vertices; name its parts or a texture", mesh.name);
                 return Err((Some(color.span().start), reason));
             }
             colors.push((fractions("color", color)?, number));
@@ -169,11 +197,11 @@ fn assigned(entries: &[Entry], mesh: &Mesh, text: &str) -> Result<Materials, Wro
     };
     let of_vertex = |vertex: usize| {
         let by_part = || of_part[*tags.part_of.get(vertex)? as usize];
-        let by_color = || nearest(*tags.colors.get(vertex)?);
+        let by_color = || nearest(*colors_of_vertices.get(vertex)?);
         by_part().or_else(by_color).or(rest).unwrap_or(0)
     };
     let of_vertex = (0..mesh.positions.len()).map(of_vertex).collect();
-    Ok(Materials { substances, of_vertex, sha256: content::sha256(text.as_bytes()) })
+    Ok(Materials { substances, of_vertex, sha256: content::sha256(content) })
 }
 
 /// Says which names there are, or the first of them.
@@ -196,6 +224,7 @@ fn unknown(name: &str, mesh: &Mesh) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::write_png;
     use crate::scene::{Tags, shapes};
 
     /// A box of which half of the vertices are of a part "rim" and the others of a group "pot".
@@ -209,7 +238,8 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Materials, Wrong> {
-        parse(text).and_then(|entries| assigned(&entries, &tagged(), text))
+        let mesh = tagged();
+        parse(text).and_then(|document| assigned(&document.material, &mesh, &mesh.tags.colors, text.as_bytes()))
     }
 
     #[test]
@@ -229,6 +259,40 @@ mod tests {
         let only =
             read("[[material]]\nkind=\"wax\"\ncolor=[1,0,0]\n[[material]]\nkind=\"wood\"\ncolor=[0,0,1]").unwrap();
         assert!(only.of_vertex.iter().all(|number| *number == 1));
+    }
+
+    #[test]
+    fn a_texture_gives_the_colours() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("materials.toml");
+        // Red to the left, blue to the right.
+        let pixels = [[255, 0, 0, 255], [0, 0, 250, 255]].concat();
+        write_png(&folder.path().join("map.png"), &Rgba8::new(2, 1, pixels).unwrap()).unwrap();
+        let entries =
+            "[[material]]\nkind = \"metal\"\ncolor = [1, 0, 0]\n[[material]]\nkind = \"wax\"\ncolor = [0, 0, 1]\n";
+        std::fs::write(&path, format!("texture = \"map.png\"\n{entries}")).unwrap();
+        let mesh = shapes::sphere(16, 16);
+        let materials = load(&path, &mesh).unwrap();
+        for (coordinates, number) in mesh.texture_coordinates.iter().zip(&materials.of_vertex) {
+            let is_right = coordinates.x - coordinates.x.floor() >= 0.5;
+            assert_eq!(*number, 1 + u32::from(is_right), "{coordinates}");
+        }
+        assert!([1, 2].iter().all(|number| materials.of_vertex.contains(number)));
+        // Another picture is another file.
+        let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]].concat();
+        write_png(&folder.path().join("map.png"), &Rgba8::new(2, 1, pixels).unwrap()).unwrap();
+        assert_ne!(load(&path, &mesh).unwrap().sha256, materials.sha256);
+
+        let bare = Mesh { texture_coordinates: Vec::new(), ..mesh.clone() };
+        for (mesh, text, part) in [
+            (&bare, "texture = \"map.png\"\n", "no texture coordinates"),
+            (&mesh, "\ntexture = \"gone.png\"\n", "gone.png"),
+        ] {
+            std::fs::write(&path, format!("{text}{entries}")).unwrap();
+            let error = load(&path, mesh).unwrap_err().to_string();
+            let line = if text.starts_with('\n') { "line 2" } else { "line 1" };
+            assert!(error.contains(part) && error.contains(line) && !error.contains('\n'), "{error}");
+        }
     }
 
     #[test]

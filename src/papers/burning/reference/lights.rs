@@ -1,6 +1,6 @@
 //! The light of the flames: of a flame what its square shows, of a cell of the box around them one ball of light.
 
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3, IVec2, IVec3};
 
 use super::super::LIGHT_CELLS;
 use super::flames::Particle;
@@ -36,6 +36,22 @@ fn noise(at: DVec2) -> f64 {
     };
     let weight = |step: i32, axis: usize| if step == 1 { fade[axis] } else { 1.0 - fade[axis] };
     (0..4).map(|i| IVec2::new(i & 1, i >> 1)).map(|s| corner(s) * weight(s.x, 0) * weight(s.y, 1)).sum()
+}
+
+/// The glow of char at a place of the object at rest, of which so much is left, at a time: patches that wander up.
+pub fn ember(place: DVec3, left: f64, time_s: f64) -> f64 {
+    let at = 22.0 * place - DVec3::Y * (17.0 / 60.0) * time_s;
+    let cell = at.floor();
+    let fade = (at - cell).to_array().map(|t| smoothstep(0.0, 1.0, t));
+    let corner = |i: i32| {
+        let step = [i & 1, (i >> 1) & 1, i >> 2];
+        let [x, y, z] = (cell.as_ivec3() + IVec3::from(step)).to_array().map(|c| c as u32);
+        let mut h = x.wrapping_mul(0x8da6_b343) ^ y.wrapping_mul(0xd816_3841) ^ z.wrapping_mul(0xcb1a_b31f);
+        h = (h ^ (h >> 15)).wrapping_mul(0x846c_a68b);
+        let weight = (0..3).map(|axis| if step[axis] == 1 { fade[axis] } else { 1.0 - fade[axis] }).product::<f64>();
+        weight * f64::from((h ^ (h >> 16)) & 0xffff) / 65535.0
+    };
+    left * smoothstep(0.35, 0.7, (0..8).map(corner).sum())
 }
 
 /// Light of a place of a flame's square, -1 to 1.

@@ -67,6 +67,14 @@ impl Tick<'_> {
         (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
     }
 
+    /// Share of its motion that a vertex has left after so long without fire; ours.
+    fn warmth(&self, state: &State, v: usize) -> f64 {
+        let Some(setting_s) = self.constants.setting_s else { return 1.0 };
+        let deformed = self.radius(state.growth_ticks) - 2.0 * self.constants.width - self.constants.reaches[v];
+        let cold_s = deformed / self.constants.speed - f64::from(self.constants.flammability) / RATE;
+        (1.0 - cold_s / setting_s).clamp(0.0, 1.0)
+    }
+
     /// omega Dist and omega Dist / chi.
     fn range(&self) -> [f64; 2] {
         let longest = self.constants.omega * self.model.mean_edge;
@@ -214,8 +222,10 @@ impl Tick<'_> {
         let mut margins = vec![f64::INFINITY; before.positions.len()];
         for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
             let (target, close) = self.guidance(guides, v);
-            let step = self.following() * (target - before.flows[v]);
+            let warmth = self.warmth(&before, v);
+            let step = warmth * self.following() * (target - before.flows[v]);
             let (folded, margin) = self.folding(&before, v);
+            let folded = warmth * folded;
             let is_active = self.is_active(&before, v);
             let fall = if is_active { self.fall() } else { 0.0 };
             let moved = before.positions[v] + step + folded - DVec3::Y * fall;

@@ -26,7 +26,7 @@ use glam::DVec3;
 pub use blocks::{Block, Grid};
 pub use model::{Model, Node, scaled};
 
-use super::{Parameters, Variant};
+use super::{Look, Parameters, Variant};
 
 /// Tables 3.1 and 6.1 and what else the text leaves to the designer. Lengths are in diagonals of the mesh at rest.
 #[derive(Debug, Clone)]
@@ -71,6 +71,8 @@ pub struct Constants {
     pub seed: u32,
     /// Fraction of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
     pub retire_at: f64,
+    /// Seconds in which wax that has burnt out sets, by the natural look.
+    pub setting_s: Option<f64>,
 }
 
 impl Constants {
@@ -100,6 +102,7 @@ impl Constants {
             random_rotation: p.random_rotation,
             seed: p.noise_seed(),
             retire_at: p.retire_at.into(),
+            setting_s: (p.look == Look::Natural).then_some(p.setting_s.into()),
         }
     }
 }
