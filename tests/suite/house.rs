@@ -1,11 +1,34 @@
-//! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document, and passes in
-//! files of their names.
+//! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document, passes in
+//! files of their names, and no test's files in the repository.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::cli::program::fumarole;
+
+/// All that lies in the repository's root, but for hidden files and what is built or measured there.
+const ROOT: [&str; 19] = [
+    "CONTRIBUTING.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "assets",
+    "benches",
+    "build.rs",
+    "dist",
+    "docs",
+    "fuzz",
+    "rustfmt.toml",
+    "schema",
+    "setup.sh",
+    "shaders",
+    "src",
+    "tests",
+];
 
 /// Options of each paper, in whose frames every pass of it occurs.
 const FRAMES: [(&str, &str); 15] = [
@@ -45,6 +68,16 @@ fn sources(folder: &str) -> Vec<PathBuf> {
     }
     assert!(found.len() > 3, "{folder}");
     found
+}
+
+#[test]
+fn nothing_strange_lies_in_the_root() {
+    let names = fs::read_dir(env!("CARGO_MANIFEST_DIR")).unwrap().map(|entry| entry.unwrap().file_name());
+    let names = names.map(|name| name.into_string().unwrap());
+    let mut found: Vec<String> =
+        names.filter(|name| !name.starts_with('.') && name != "target" && name != "fumarole-out").collect();
+    found.sort();
+    assert_eq!(found, ROOT, "left: what a test or a program has written, or ROOT lacks it");
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
     const OWN_KIB: usize = 384 << 10;
     let limit_kib = OWN_KIB + (64 << 10) + 16 * bytes.len() / 1024;
     let script = format!("ulimit -v {limit_kib}; {}; code=$?; times; exit $code", program.for_shell());
-    let run = || std::process::Command::new("sh").arg("-c").arg(&script).output().unwrap();
+    let run = || std::process::Command::new("sh").arg("-c").arg(&script).current_dir(out.path()).output().unwrap();
     let output = beside_others(run);
     let seconds = seconds(&String::from_utf8_lossy(&output.stdout));
     let stderr = String::from_utf8_lossy(&output.stderr);

@@ -27,7 +27,8 @@ pub fn device() -> String {
     env::var("FUMAROLE_TEST_DEVICE").unwrap_or_else(|_| "llvmpipe".to_owned())
 }
 
-/// A command line in the making.
+/// A command line in the making. It runs in an empty folder of its own unless told otherwise, so that nothing that it
+/// writes under a relative name stays in the repository.
 pub struct Program {
     command: Command,
 }
@@ -118,7 +119,7 @@ impl Program {
         self
     }
 
-    /// Runs in `folder`, so that `fumarole-out/` lands there.
+    /// Runs in `folder`, which outlives it: `fumarole-out/` and relative names land there.
     pub fn inside(mut self, folder: &Path) -> Self {
         self.command.current_dir(folder);
         self
@@ -153,10 +154,14 @@ impl Program {
         use std::os::unix::process::CommandExt;
         self.command.process_group(0);
         let text = format!("{:?}", self.command);
+        let own = self.command.get_current_dir().is_none().then(folder);
+        if let Some(own) = &own {
+            self.command.current_dir(own);
+        }
         let mut child = self.command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let stdout = collect(child.stdout.take().unwrap());
         let stderr = collect(child.stderr.take().unwrap());
-        Running { child, text, stdout, stderr }
+        Running { child, text, own, stdout, stderr }
     }
 
     /// Runs it to its end.
@@ -177,6 +182,7 @@ fn collect(mut pipe: impl Read + Send + 'static) -> thread::JoinHandle<String> {
 pub struct Running {
     child: Child,
     text: String,
+    own: Option<tempfile::TempDir>,
     stdout: thread::JoinHandle<String>,
     stderr: thread::JoinHandle<String>,
 }
@@ -207,13 +213,14 @@ impl Running {
             thread::sleep(Duration::from_millis(3));
         };
         let (stdout, stderr) = (self.stdout.join().unwrap(), self.stderr.join().unwrap());
-        Ended { text: self.text, status, stdout, stderr }
+        Ended { text: self.text, own: self.own, status, stdout, stderr }
     }
 }
 
 /// End of a program.
 pub struct Ended {
     text: String,
+    own: Option<tempfile::TempDir>,
     pub status: ExitStatus,
     pub stdout: String,
     pub stderr: String,
@@ -230,8 +237,8 @@ impl Ended {
         self
     }
 
-    /// Asserts the exit code, nothing on standard output, and one clear line on standard error that holds every one
-    /// of `parts`.
+    /// Asserts the exit code, nothing on standard output or in the folder that it ran in, and one clear line on standard
+    /// error that holds every one of `parts`.
     pub fn refused(self, code: i32, parts: &[&str]) {
         assert_eq!(self.status.code(), Some(code), "{}", self.story());
         assert_eq!(self.stdout, "", "{}", self.story());
@@ -249,6 +256,8 @@ impl Ended {
     fn names(&self, parts: &[&str]) {
         assert!(self.stderr.starts_with("error: ") && self.stderr.ends_with('\n'), "{}", self.story());
         assert!(!self.stderr.contains("panicked"), "{}", self.story());
+        let left = self.own.as_ref().map(|own| entries(own.path()));
+        assert!(left.is_none_or(|names| names.is_empty()), "it left files: {}", self.story());
         for part in parts {
             assert!(self.stderr.contains(part), "{part:?} is missing: {}", self.story());
         }

@@ -168,6 +168,7 @@ pub fn ends_well(program: &Program) -> Result<bool, String> {
         let mut child = Command::new("sh")
             .arg("-c")
             .arg(&script)
+            .current_dir(out.path())
             .stdin(Stdio::null())
             .stdout(fs::File::create(&stdout).unwrap())
             .stderr(fs::File::create(&stderr).unwrap())
