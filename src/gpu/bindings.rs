@@ -87,7 +87,9 @@ pub struct Use {
 pub struct Bindings {
     device: Arc<Device>,
     pool: vk::DescriptorPool,
+    /// The descriptor set, every descriptor of which is written.
     pub(crate) set: vk::DescriptorSet,
+    /// Accesses that the descriptors mean.
     pub(crate) uses: Vec<Use>,
     _program: Arc<Program>,
 }

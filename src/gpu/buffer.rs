@@ -64,7 +64,9 @@ impl BufferDesc {
 
 /// A buffer with its memory; it remembers what was last done to each of its byte ranges.
 pub struct Buffer {
+    /// Handle.
     pub(crate) raw: vk::Buffer,
+    /// The device that it was made on.
     pub(super) device: Arc<Device>,
     allocation: Option<Allocation>,
     allocated_bytes: u64,
@@ -78,8 +80,12 @@ impl Buffer {
     ///
     /// # Errors
     /// [`Error::Limit`] when a storage buffer is larger than the device binds, [`Error::OutOfMemory`].
-    pub fn new(device: &Arc<Device>, desc: BufferDesc) -> Result<Arc<Self>, Error> {
+    pub fn new(device: &Arc<Device>, mut desc: BufferDesc) -> Result<Arc<Self>, Error> {
         let size_bytes = desc.size_bytes.max(4);
+        if desc.usage.contains(vk::BufferUsageFlags::INDEX_BUFFER) && !device.physical().has_full_indices() {
+            // A kernel reads the indices before each draw: see `indirect`.
+            desc.usage |= vk::BufferUsageFlags::STORAGE_BUFFER;
+        }
         let limit = device.physical().limits.max_storage_buffer_range as u64;
         if desc.usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && size_bytes > limit {
             return Err(Error::Limit {
@@ -269,7 +275,9 @@ impl Drop for Buffer {
 /// A byte range of a buffer.
 #[derive(Clone)]
 pub struct BufferView {
+    /// The buffer that the range lies in.
     pub(crate) buffer: Arc<Buffer>,
+    /// Bytes, from the first to the one behind the last.
     pub(crate) range: Range<u64>,
 }
 

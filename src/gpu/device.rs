@@ -12,21 +12,26 @@ use super::error::{Context, Error};
 use super::extensions::Extension;
 use super::instance::Instance;
 use super::live::{Kind, LiveObjects};
+use super::memory;
 use super::physical::{Feature, PhysicalDevice};
 
 /// An open device with its one graphics, compute and transfer queue.
 pub struct Device {
     // The allocator frees its blocks through the raw device, so `drop` below takes it first.
     allocator: ManuallyDrop<Mutex<Allocator>>,
+    /// Handle with the calls of the device.
     pub(crate) raw: ash::Device,
     queue: Mutex<vk::Queue>,
+    /// Index of the family that its queue is of.
     pub(crate) queue_family: u32,
+    /// Calls that name objects and label commands; absent where the instance has none.
     pub(crate) debug: Option<ext::debug_utils::Device>,
     /// The calls of swapchains, where it was opened for them.
     #[cfg(feature = "window")]
     pub(super) presenting: Option<super::surface::Presenting>,
     /// Every extension that was asked for.
     extensions: Vec<String>,
+    /// Description of the device as it was found when it was opened.
     pub(super) physical: PhysicalDevice,
     instance: Arc<Instance>,
     /// Set while its profiling lock is held, which it has once.
@@ -124,7 +129,7 @@ impl Device {
             physical_device: physical.raw,
             debug_settings: Default::default(),
             buffer_device_address: false,
-            allocation_sizes: Default::default(),
+            allocation_sizes: memory::block_sizes(&physical.memory),
         });
         let allocator = match allocator {
             Ok(allocator) => allocator,

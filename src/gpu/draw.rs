@@ -268,7 +268,7 @@ impl<'a> Dispatch<'a> {
 
     /// Dispatches as many workgroups as the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
     pub fn groups_indirect(&mut self) -> &mut Self {
-        let Some(clamp) = self.commands.inner.body.clamp() else {
+        let Some(clamp) = self.commands.inner.body.parameters() else {
             self.commands.refuse("it has no indirect buffer");
             return self;
         };

@@ -12,7 +12,7 @@ use super::bindings::Use;
 use super::device::Device;
 use super::draw::{Dispatch, Draw};
 use super::error::Error;
-use super::pass::{Body, Pass, Workgroup};
+use super::pass::{Body, Pass};
 use super::pass_info::PassInfo;
 use super::query::QueryPool;
 use super::recorder::Recorder;
@@ -22,12 +22,17 @@ use super::work::Fetched;
 
 /// A frame being recorded.
 pub struct Frame<'a> {
+    /// The recorder that runs it.
     pub(super) recorder: &'a mut Recorder,
+    /// What is measured of it: times, counters or nothing.
     pub(super) mode: Mode,
+    /// Number of this submission in the frame, from 0 on.
     pub(super) submission: u32,
+    /// Moment at which recording began.
     pub(super) started: Instant,
     /// The pass whose recording failed: the frame is not submitted then.
     pub(super) failed: Option<&'static str>,
+    /// Pass behind which it ends.
     pub(super) end: End,
     /// Milliseconds from the frame's start to that of this submission's recording.
     pub(super) recording_ms: f64,
@@ -360,12 +365,12 @@ impl Frame<'_> {
         r.open_label(pass.info());
         let device = r.commands.device.clone();
         let commands = r.commands.buffer;
-        if let Some(clamp) = pass.inner.body.clamp() {
+        for clamp in pass.inner.body.clamps() {
             let kernel = &clamp.pass.inner;
+            let Body::Compute { workgroup, .. } = kernel.body else { continue };
             r.commands.synchronise(name, &kernel.uses)?;
             r.bind(kernel);
-            let mut dispatch =
-                Dispatch::new(&device, commands, kernel, Workgroup { size: [1; 3], lies_in_rows: false });
+            let mut dispatch = Dispatch::new(&device, commands, kernel, workgroup);
             clamp.dispatch(&mut dispatch);
             dispatch.finish()?;
         }

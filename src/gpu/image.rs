@@ -154,6 +154,7 @@ impl ImageDesc {
 
 /// An image with its memory; it remembers what was last done to each of its layers.
 pub struct Image {
+    /// Handle.
     pub(crate) raw: vk::Image,
     device: Arc<Device>,
     allocation: Option<Allocation>,
@@ -304,11 +305,15 @@ impl Drop for Image {
 
 /// A view of some layers of an image.
 pub struct ImageView {
+    /// Handle.
     pub(crate) raw: vk::ImageView,
+    /// Aspects that it shows.
     pub(crate) aspect: vk::ImageAspectFlags,
     /// An array view, even of one layer.
     pub(crate) is_array: bool,
+    /// The image that it shows.
     pub(crate) image: Arc<Image>,
+    /// Array layers, from the first to the one behind the last.
     pub(crate) layers: Range<u32>,
 }
 
@@ -395,9 +400,11 @@ pub(crate) fn subresource_range(aspect: vk::ImageAspectFlags, layers: &Range<u32
 
 /// A sampler; edges are clamped.
 pub struct Sampler {
+    /// Handle.
     pub(crate) raw: vk::Sampler,
     /// Reads between texels, which not every format allows.
     pub(super) is_linear: bool,
+    /// The device that it was made on.
     pub(super) device: Arc<Device>,
 }
 

@@ -15,6 +15,7 @@ const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// A Vulkan instance and what belongs to it alone.
 pub struct Instance {
+    /// Handle with the calls of the instance.
     pub(crate) raw: ash::Instance,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Arc<Messages>,
@@ -26,6 +27,7 @@ pub struct Instance {
     has_debug_utils: bool,
     id: u64,
     // Last: the loader's library must outlive every function pointer above.
+    /// Calls of the loader, whose library it keeps loaded.
     pub(super) entry: ash::Entry,
 }
 

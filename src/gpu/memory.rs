@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+use gpu_allocator::{AllocationSizes, MemoryLocation};
 
 use super::buffer::Location;
 use super::device::Device;
@@ -52,6 +52,26 @@ pub(super) fn allocate(
             gpu_allocator::AllocationError::OutOfMemory => out_of_memory(),
             other => Error::Allocation { object: name.to_owned(), reason: other.to_string() },
         })
+}
+
+/// Bytes of the blocks that the allocator asks for, of the device's own memory and of memory that the host sees: none is
+/// larger than the smallest heap that it may come from.
+fn block_bytes(memory: &vk::PhysicalDeviceMemoryProperties) -> [u64; 2] {
+    /// Multiples of this are all that the allocator takes, from one on.
+    const STEP: u64 = 4 << 20;
+    let host_visible = vk::MemoryPropertyFlags::HOST_VISIBLE;
+    [(false, 256 << 20), (true, 64 << 20)].map(|(is_host, most)| {
+        let types = memory.memory_types[..memory.memory_type_count as usize].iter();
+        let ours = types.filter(|one| one.property_flags.contains(host_visible) == is_host);
+        let smallest = ours.map(|one| memory.memory_heaps[one.heap_index as usize].size).min().unwrap_or(most);
+        (smallest.min(most) / STEP).max(1) * STEP
+    })
+}
+
+/// The sizes of the allocator's blocks on a device of this memory.
+pub(super) fn block_sizes(memory: &vk::PhysicalDeviceMemoryProperties) -> AllocationSizes {
+    let [device, host] = block_bytes(memory);
+    AllocationSizes::new(device, host)
 }
 
 /// Bytes of the heap behind the first memory type that suits, which is the one that the allocator falls back on.
@@ -108,5 +128,28 @@ mod tests {
         assert_eq!(heap_bytes(&memory, 0b1001, Location::Upload), 20);
         assert_eq!(heap_bytes(&memory, 0b1111, Location::Readback), 300);
         assert_eq!(heap_bytes(&memory, 0b0001, Location::Readback), u64::MAX);
+    }
+
+    #[test]
+    fn blocks_are_no_larger_than_the_heaps_that_they_come_from() {
+        use vk::MemoryPropertyFlags as P;
+        let mut memory = vk::PhysicalDeviceMemoryProperties { memory_type_count: 3, ..Default::default() };
+        let types = [(P::DEVICE_LOCAL, 0), (P::HOST_VISIBLE, 1), (P::DEVICE_LOCAL | P::HOST_VISIBLE, 2)];
+        for (place, (property_flags, heap_index)) in memory.memory_types.iter_mut().zip(types) {
+            *place = vk::MemoryType { property_flags, heap_index };
+        }
+        let mut of_heaps = |sizes_mib: [u64; 3]| {
+            for (heap, size) in memory.memory_heaps.iter_mut().zip(sizes_mib) {
+                heap.size = size << 20;
+            }
+            block_bytes(&memory).map(|bytes| bytes >> 20)
+        };
+        assert_eq!(of_heaps([8192, 16384, 256]), [256, 64]);
+        assert_eq!(of_heaps([130, 16384, 33]), [128, 32]);
+        assert_eq!(of_heaps([8192, 9, 256]), [256, 8]);
+        // Of a device with one heap, all of which the host sees.
+        memory.memory_type_count = 1;
+        memory.memory_types[0].property_flags |= P::HOST_VISIBLE;
+        assert_eq!(block_bytes(&memory), [256 << 20, 64 << 20]);
     }
 }

@@ -19,19 +19,20 @@
 //! | draw vertices, instances or indices that are not bound | each draw is compared with the bound buffers' lengths | [`Draw`] |
 //! | fetch or store beyond a buffer in a shader, or by an index | every device is opened with `robustBufferAccess` | [`Device::open`] |
 //! | draw indirectly beyond the index buffer, or dispatch indirectly more than the device takes | a kernel before the pass clamps the parameters, which the host never sees | `indirect` |
-//! | use larger indices or more workgroups than the device takes | each is compared with the device's limits; elements lie in rows of workgroups where the shader numbers them so | `pass_check`, [`Dispatch`] |
+//! | use larger indices than the device takes | vertices are counted; without `fullDrawIndexUint32` a kernel before the pass keeps the values, which the host never sees, at the largest | `pass_check`, `indirect` |
+//! | dispatch more workgroups than the device takes | each count is compared with its limits; elements lie in rows of workgroups where the shader numbers them so | [`Dispatch`] |
 //! | give a stage more inputs, outputs, vertices, threads, shared memory, descriptors or attachments than the device takes | the reflected binaries are compared with the device's limits before anything is made of them, alone and in sum | `stage_limits` |
-//! | make images, attachments, buffers, samplers or blocks of memory beyond the device's limits, or larger than their heap | each is compared | [`Image::new`], [`Buffer::new`], [`Sampler::new`], `memory` |
+//! | make images, attachments, buffers, samplers or blocks of memory beyond the device's limits, or larger than their heap | each is compared; blocks are of sizes that every heap holds | [`Image::new`], [`Buffer::new`], [`Sampler::new`], `memory` |
 //! | give constants of another type than declared, none, or some to a pass without | types are compared by `TypeId`, a draw wants them set | [`Draw`], [`Dispatch`] |
 //! | give a host struct another layout than its block's | fields are compared with the reflected binary | [`pass::PassBuilder::build`] |
 //! | leave a descriptor unwritten, or write one of another kind, shape, format, alignment or size | each is compared with the reflected binding, the resource's usage and the limits | `bindings` |
-//! | join stages that do not fit, or attachments that no stage writes | inputs, outputs and formats are compared | `pass_check` |
+//! | join stages that do not fit, a geometry stage that emits nothing, or attachments that no stage writes | inputs, outputs and formats are compared | `pass_check`, `stage_limits` |
 //! | draw points without a size | the vertex stage must store one | `pass_check` |
 //! | filter a texture whose format the device does not filter, by a comparison, or with a filter that it lacks | the pairs of textures and samplers in the binaries are compared with formats and filters | `pass_check`, [`Sampler::new`] |
 //! | sample one image by several stages, some of which do not wait for it | the image's first barrier is one for all of them | `bindings` |
 //! | let counting draws read what the pass does not bind | their binary is compared with the pass's own descriptors | `pass_check` |
 //! | draw into an image of three dimensions, fill it from the host, or bind it as one of two | its uses are refused, shapes are compared | [`Image::new`], `bindings` |
-//! | want what a device was not opened with: stages, stores, capabilities, blending, formats | the features are asked for each | `pass_check`, `program`, `shader`, [`Image::new`] |
+//! | want what a device was not opened with: stages, stores, capabilities, extensions of SPIR-V, blending, formats | the features are asked for each | `pass_check`, `program`, `shader`, [`Image::new`] |
 //! | touch what a pass writes a second time in that pass | uses are compared with each other | `pass_check` |
 //! | write depth that a pass only tests, or fill it with what lies outside 0 to 1 | loads, clear values and the tests of counting draws are compared; hosts upload none | `render_pass`, `pass_check`, [`transfer`] |
 //! | clear integers to something else | clear values are compared with the format's range, and given in its type | `render_pass` |
@@ -56,9 +57,7 @@
 //!
 //! Not checked here: the inside of a shader, its loops, what it does with shared memory and built-ins. Shaders are built
 //! in, and a test makes every pipeline under validation; run with `--validate` what `--shader-dir` replaces. A texel
-//! fetch beyond an image gives undefined values, as Vulkan defines it. Values in an index buffer beyond
-//! `maxDrawIndexedIndexValue`, of a device without `fullDrawIndexUint32`, are seen where a vertex buffer bounds them, and
-//! not where shaders pull vertices by their numbers.
+//! fetch beyond an image gives undefined values, as Vulkan defines it.
 
 pub mod access;
 mod barrier;

@@ -23,7 +23,9 @@ pub use super::rebind::RebindBuilder;
 /// A built pass of the device. Cloning shares it.
 #[derive(Clone)]
 pub struct Pass {
+    /// Row of the pass table.
     pub(super) info: Arc<PassInfo>,
+    /// Pipelines, descriptors and commands, shared by its clones.
     pub(crate) inner: Arc<Inner>,
 }
 
@@ -66,6 +68,8 @@ pub(crate) enum Body {
         indices: Option<BufferView>,
         /// Kernel that clamps the parameters of an indirect draw.
         indirect: Option<Box<Clamp>>,
+        /// Kernel that clamps the indices for a device that does not take all.
+        clamped_indices: Option<Box<Clamp>>,
         /// Elements that draws may fetch.
         bounds: DrawBounds,
     },
@@ -93,12 +97,21 @@ pub(crate) struct Workgroup {
 }
 
 impl Body {
-    /// The kernel before the commands, where their parameters lie on the device.
-    pub fn clamp(&self) -> Option<&Clamp> {
+    /// The kernel that clamps the parameters of the commands, where they lie on the device.
+    pub fn parameters(&self) -> Option<&Clamp> {
         match self {
             Body::Graphics { indirect, .. } | Body::Compute { indirect, .. } => indirect.as_deref(),
             Body::Copy { .. } => None,
         }
+    }
+
+    /// The kernels before the commands.
+    pub fn clamps(&self) -> impl Iterator<Item = &Clamp> {
+        let indices = match self {
+            Body::Graphics { clamped_indices, .. } => clamped_indices.as_deref(),
+            Body::Compute { .. } | Body::Copy { .. } => None,
+        };
+        self.parameters().into_iter().chain(indices)
     }
 }
 
@@ -130,20 +143,7 @@ impl Pass {
     pub fn copy(name: &'static str, section: &'static str, from: impl Into<Resource>, to: &Arc<Buffer>) -> Pass {
         let from = from.into();
         let uses = transfer::copy_uses(&from, to).to_vec();
-        let info = Arc::new(PassInfo {
-            name,
-            section,
-            kind: PassKind::Transfer,
-            shaders: Vec::new(),
-            reads: vec![from.name().to_owned()],
-            writes: vec![to.name().to_owned()],
-            blend: Vec::new(),
-            depth: None,
-            counting: None,
-            compiler: None,
-            binaries: Vec::new(),
-            executables: None,
-        });
+        let info = PassInfo::without_shaders(name, section, PassKind::Transfer, &[from.name()], &[to.name()]);
         let declared = Declared::copy(&from);
         let inner = Inner {
             device: to.device().clone(),

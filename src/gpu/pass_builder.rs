@@ -102,11 +102,11 @@ impl PassDesc {
     }
 
     /// The accesses that no descriptor names: fetches and attachments.
-    fn fixed_function_uses(&self) -> Vec<Use> {
-        let fetches = [(&self.vertices, Access::VertexRead), (&self.indices, Access::IndexRead)];
+    fn fixed_function_uses(&self, indices: Option<&BufferView>) -> Vec<Use> {
+        let fetches = [(self.vertices.as_ref(), Access::VertexRead), (indices, Access::IndexRead)];
         let fetches = fetches
             .into_iter()
-            .filter_map(|(view, access)| Some(Use { resource: view.as_ref()?.into(), access, discard: false }));
+            .filter_map(|(view, access)| Some(Use { resource: view?.into(), access, discard: false }));
         let attachment = |target: &Target, access| Use {
             resource: (&target.view).into(),
             access,
@@ -359,7 +359,9 @@ pub(super) fn finish(
         pass_check::filters(device, &desc, pipeline)?;
     }
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
-    uses.extend(desc.fixed_function_uses());
+    let clamped_indices = Clamp::of_indices(shaders, &desc)?;
+    let indices = clamped_indices.as_ref().map(|clamp| clamp.clamped.view()).or_else(|| desc.indices.clone());
+    uses.extend(desc.fixed_function_uses(indices.as_ref()));
     pass_check::uses(device, desc.name, &uses)?;
     let body = match render_pass {
         None => {
@@ -378,13 +380,14 @@ pub(super) fn finish(
                 extent,
                 clears: desc.targets.clear_values(),
                 vertices: desc.vertices.clone(),
-                indices: desc.indices.clone(),
+                indices,
                 indirect: indirect.map(Box::new),
+                clamped_indices: clamped_indices.map(Box::new),
                 bounds,
             }
         }
     };
-    if let Some(clamp) = body.clamp() {
+    if let Some(clamp) = body.parameters() {
         uses.push(Use { resource: (&clamp.clamped).into(), access: Access::IndirectRead, discard: false });
     }
     let mut info = desc.describe(&pipeline.program, &uses);

@@ -82,11 +82,21 @@ impl PassInfo {
 
     /// A pass of host work.
     pub fn host(name: &'static str, section: &'static str, reads: &[&str], writes: &[&str]) -> Arc<Self> {
+        Self::without_shaders(name, section, PassKind::Host, reads, writes)
+    }
+
+    pub(super) fn without_shaders(
+        name: &'static str,
+        section: &'static str,
+        kind: PassKind,
+        reads: &[&str],
+        writes: &[&str],
+    ) -> Arc<Self> {
         let owned = |words: &[&str]| words.iter().map(|&w| w.to_owned()).collect();
         Arc::new(PassInfo {
             name,
             section,
-            kind: PassKind::Host,
+            kind,
             shaders: Vec::new(),
             reads: owned(reads),
             writes: owned(writes),

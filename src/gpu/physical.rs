@@ -111,6 +111,7 @@ pub const BASELINE: [Feature; 3] = [Feature::Synchronization2, Feature::HostQuer
 
 /// A Vulkan device as it is found, before it is opened.
 pub struct PhysicalDevice {
+    /// Handle.
     pub(crate) raw: vk::PhysicalDevice,
     /// Position in the loader's list.
     pub index: usize,
@@ -141,7 +142,7 @@ pub struct PhysicalDevice {
     /// Opened, it keeps what its compiler tells of pipelines.
     is_profiled: bool,
     /// `fullDrawIndexUint32`: every 32-bit index is one.
-    has_full_indices: bool,
+    pub(super) has_full_indices: bool,
     max_buffer_bytes: u64,
     /// The instance that it was found on.
     instance_id: u64,

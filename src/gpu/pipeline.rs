@@ -137,6 +137,7 @@ pub enum Topology {
 
 /// A pipeline with its program.
 pub struct Pipeline {
+    /// Handle.
     pub(crate) raw: vk::Pipeline,
     device: Arc<Device>,
     /// Stages, descriptor layout and push constants.

@@ -57,9 +57,13 @@ pub struct Program {
     pub modules: Vec<Arc<ShaderModule>>,
     /// Descriptors of set 0, by binding.
     pub slots: Vec<Slot>,
+    /// Stages that take push constants.
     pub(crate) push_stages: vk::ShaderStageFlags,
+    /// Bytes of the largest block of push constants; 0 without one.
     pub(crate) push_bytes: u32,
+    /// Layout of descriptor set 0.
     pub(crate) set_layout: vk::DescriptorSetLayout,
+    /// Layout of the pipelines: the set and the push constants.
     pub(crate) layout: vk::PipelineLayout,
 }
 

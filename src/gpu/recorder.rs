@@ -28,24 +28,34 @@ const COUNTERS: u32 = 16_384;
 
 /// Records and runs frames, one in flight. Buffers, pools and lists are reused from frame to frame.
 pub struct Recorder {
+    /// The command buffer with its fence.
     pub(super) commands: Commands,
+    /// Queries of time; absent where the device has none.
     pub(super) timestamps: Option<QueryPool>,
+    /// Queries of samples that passed; absent without exact counts.
     pub(super) samples_passed: Option<QueryPool>,
+    /// Queries of vertices, primitives and invocations; absent without pipeline statistics.
     pub(super) graphics_counts: Option<QueryPool>,
+    /// Queries of compute invocations; absent without pipeline statistics.
     pub(super) compute_counts: Option<QueryPool>,
     /// Queries of the device's own counters, while a pass is counted with them.
     pub(super) performance: Option<PerformancePool>,
+    /// Bits of a timestamp that are valid.
     pub(super) timestamp_mask: u64,
+    /// Nanoseconds of one step of a timestamp.
     pub(super) period_ns: f64,
     calibration: Option<Calibration>,
     /// Frames that were submitted so far.
     pub(super) frames: u64,
-    /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
+    /// The pass, as an index into `sample.passes`, of each timestamped interval.
     pub(super) intervals: Vec<usize>,
+    /// Counters of the passes of this submission.
     pub(super) counted: Vec<Counted>,
     /// Passes with calls beyond the queries or the range of timestamps: not measured, rather than in part.
     overrun: Vec<usize>,
+    /// Debug labels by the passes' names, made once.
     pub(super) labels: Vec<(&'static str, CString)>,
+    /// Times and counters of the frame so far.
     pub(super) sample: FrameSample,
     /// Each pass of a plain frame is a submission of its own.
     pub(super) submits_by_pass: bool,

@@ -289,6 +289,7 @@ fn clear_color(format: vk::Format, color: [f32; 4]) -> vk::ClearColorValue {
 
 /// A render pass of one subpass.
 pub struct RenderPass {
+    /// Handle.
     pub(crate) raw: vk::RenderPass,
     device: Arc<Device>,
 }
@@ -352,6 +353,7 @@ impl Drop for RenderPass {
 
 /// A framebuffer: the views that a render pass draws into.
 pub struct Framebuffer {
+    /// Handle.
     pub(crate) raw: vk::Framebuffer,
     device: Arc<Device>,
     _targets: Targets,

@@ -85,6 +85,10 @@ impl ShaderLibrary {
         if let Some(capability) = unknown_capability(&words, self.device.physical()) {
             return Err(problem(format!("it wants SPIR-V capability {capability}, with which no device is opened")));
         }
+        // Each wants a feature or an extension of the device, some of them no capability.
+        if let Some(extension) = shader_build::extensions(&words).next() {
+            return Err(problem(format!("it wants SPIR-V extension {extension}, with which no device is opened")));
+        }
         let sha256 = content::sha256(&words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<_>>());
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a SPIR-V module that one of the two compilers wrote, of capabilities that the device was
@@ -129,6 +133,7 @@ fn replace(dir: &Path) -> Result<Vec<shader_build::CompiledShader>, String> {
 
 /// One stage's module with its interface.
 pub struct ShaderModule {
+    /// Handle.
     pub(crate) raw: vk::ShaderModule,
     device: Arc<Device>,
     /// Path under `shaders/`.

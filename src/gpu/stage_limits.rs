@@ -41,6 +41,10 @@ pub(super) fn stage(device: &Device, pass: &str, module: &ShaderModule) -> Resul
         ]),
         Stage::Geometry => {
             let vertices = u64::from(interface.emitted_vertices.unwrap_or(0));
+            if vertices == 0 {
+                let problem = format!("its geometry shader {} emits no vertices", module.name);
+                return Err(Error::Pass { pass: pass.to_owned(), problem });
+            }
             let components = |place: &Location| u64::from(place.count) * u64::from(place.format.components);
             // With its place.
             let of_vertex = 4 + interface.outputs.iter().map(components).sum::<u64>();

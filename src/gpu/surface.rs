@@ -92,7 +92,9 @@ impl Presenting {
 
 /// A window as Vulkan draws to it.
 pub struct Surface {
+    /// Handle.
     pub(super) raw: vk::SurfaceKHR,
+    /// Calls about surfaces of the instance.
     pub(super) calls: khr::surface::Instance,
     instance: Arc<Instance>,
     /// The swapchain that has it, null without one.

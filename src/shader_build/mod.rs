@@ -80,7 +80,7 @@ pub use interface::{
     Binding, BindingKind, Block, Format, ImageFormat, ImageShape, Interface, Location, Member, Sampling, Scalar,
 };
 pub use layout::{HostBlock, LayoutMismatch};
-pub use spirv::{capabilities, instruction_count};
+pub use spirv::{capabilities, extensions, instruction_count};
 
 /// The stage of a shader, told by the ending of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -34,6 +34,14 @@ pub fn capabilities(words: &[u32]) -> impl Iterator<Item = u32> {
         .filter_map(|(_, operands)| operands.first().copied())
 }
 
+/// The extensions of SPIR-V that a binary declares, by name.
+pub fn extensions(words: &[u32]) -> impl Iterator<Item = String> {
+    instructions(words).filter(|(op, _)| *op == Op::Extension as u32).map(|(_, operands)| {
+        let bytes = operands.iter().flat_map(|word| word.to_le_bytes()).take_while(|&byte| byte != 0);
+        String::from_utf8_lossy(&bytes.collect::<Vec<_>>()).into_owned()
+    })
+}
+
 /// The built-ins that variables are declared as.
 pub(super) fn declared_built_ins(words: &[u32]) -> HashSet<u32> {
     let built_in = |(op, operands): (u32, &[u32])| match *operands {

@@ -1,5 +1,6 @@
 //! Devices of lower limits than the driver's: what is beyond them is refused before Vulkan sees it.
 
+use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -9,7 +10,7 @@ use super::super::pass::Pass;
 use super::super::profiling_lock::ProfilingLock;
 use super::super::render_pass::{Blend, Load};
 use super::super::shader::{Compiler, ShaderLibrary};
-use super::super::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, Topology};
+use super::super::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, Mode, Recorder, Topology, transfer};
 use super::{alone, open_device};
 
 crate::host_block! {
@@ -127,6 +128,55 @@ fn nothing_is_made_beyond_the_limits() {
         let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
         assert!(messages.is_empty(), "{messages:#?}");
     }
+}
+
+/// Columns of the target where points lie that are drawn by these indices, which no vertex buffer bounds.
+fn columns(device: &Arc<Device>, indices: &[u32]) -> Vec<usize> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("test")).unwrap();
+    let text = "#version 450\nlayout(location = 0) out vec3 colour;\n\
+                void main() {\n\
+                    colour = vec3(1.0);\n\
+                    gl_PointSize = 1.0;\n\
+                    gl_Position = vec4((float(gl_VertexIndex) + 0.5) / 4.0 - 1.0, 0.0, 0.5, 1.0);\n\
+                }\n";
+    fs::write(folder.path().join("test/asymmetric.vert"), text).unwrap();
+    let library = ShaderLibrary::new(device, Compiler::Glslang, Some(folder.path())).unwrap();
+    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+    let target = ImageDesc::new_2d("target", vk::Format::R8G8B8A8_UNORM, 8, 1).usage(usage);
+    let target = Image::new(device, target).unwrap().view().unwrap();
+    let bytes: &[u8] = bytemuck::cast_slice(indices);
+    let buffer = transfer::upload(device, "indices", vk::BufferUsageFlags::INDEX_BUFFER, bytes).unwrap();
+    let pass = Pass::graphics("draw", "", "test/asymmetric.vert", "test/asymmetric.frag")
+        .indices(&buffer)
+        .topology(Topology::Points)
+        .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
+        .build(&library)
+        .unwrap();
+    assert_eq!(pass.info().reads, ["indices"]);
+    let mut recorder = Recorder::new(device).unwrap();
+    let count = indices.len() as u32;
+    recorder.run(Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.indices(count))).unwrap();
+    let texels = transfer::read_image(device, &target).unwrap();
+    texels.chunks_exact(4).enumerate().filter(|(_, texel)| texel[0] > 0).map(|(column, _)| column).collect()
+}
+
+#[test]
+fn indices_beyond_the_largest_are_not_drawn() {
+    let _alone = alone();
+    // As many as lie in two rows of workgroups of a device that takes one along x.
+    let mut indices = vec![0; 100];
+    (indices[1], indices[2], indices[98], indices[99]) = (3, 4_000_000_000, 5, 7);
+    let device = open_device();
+    assert_eq!(columns(&device, &indices), [0, 3, 5, 7]);
+    let mut device = Arc::into_inner(device).unwrap();
+    device.physical.has_full_indices = false;
+    device.physical.limits.max_draw_indexed_index_value = 6;
+    device.physical.limits.max_compute_work_group_count[0] = 1;
+    let device = Arc::new(device);
+    assert_eq!(columns(&device, &indices), [0, 3, 5, 6]);
+    let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
+    assert!(messages.is_empty(), "{messages:#?}");
 }
 
 #[test]

@@ -300,3 +300,40 @@ fn pictures_in_rows_of_workgroups_are_those_in_one() {
         assert!(picture(None) == picture(Some("max-compute-work-group-count=40")), "{name} {scene}");
     }
 }
+
+/// A device without `fullDrawIndexUint32`: a kernel keeps indices at its largest, which meshes that fit never reach, and what
+/// does not fit is refused.
+#[test]
+fn pictures_with_fewer_indices_are_those_with_all() {
+    let layer = Layer::new();
+    let folder = program::folder();
+    let object = program::file(&folder, "ball.stl", ball(8));
+    let object = format!("--object {}", object.display());
+    for (name, scene) in [
+        ("burning", "--variant shell"),
+        ("caustics", "--variant culled"),
+        ("lava", object.as_str()),
+        ("terrain", "--variant mesh"),
+    ] {
+        let paper = PAPERS.iter().find(|paper| paper.name == name).unwrap();
+        let picture = |limits: Option<&str>| {
+            let path = folder.path().join(format!("{name}.png"));
+            let program = paper.run("bench --quiet --json").args(scene).args(ONCE).arg("--image").arg(&path);
+            let program = layer.before(program, limits.is_some());
+            let lesser = |program: program::Program, limits: &str| {
+                program.env("FUMAROLE_LAYER_LACKS", "full-draw-index").env("FUMAROLE_LAYER_LIMITS", limits)
+            };
+            (limits.into_iter().fold(program, lesser).run(), path)
+        };
+        let read = |(ended, path): (Ended, std::path::PathBuf)| {
+            ended.succeeded();
+            std::fs::read(path).unwrap()
+        };
+        let all = read(picture(None));
+        assert!(all == read(picture(Some("max-draw-indexed-index-value=16777215"))), "{name} {scene}");
+        if matches!(name, "caustics" | "lava") {
+            let (ended, _) = picture(Some("max-draw-indexed-index-value=5"));
+            ended.refused(2, &["index of a vertex", "limit of 5"]);
+        }
+    }
+}

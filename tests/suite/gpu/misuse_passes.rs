@@ -407,5 +407,15 @@ fn what_a_device_was_not_opened_with_is_refused() {
         let doubles = Pass::compute("doubles", "", "test/advance.comp").with("Values", &numbers);
         let text = message(doubles.build(&library));
         assert!(text.contains("test/advance.comp: it wants SPIR-V capability 10"), "{text}");
+
+        // One that ends its invocations by an instruction of an extension, which wants no capability.
+        let text = "#extension GL_EXT_terminate_invocation : require\n\
+                    layout(location = 0) out vec4 target;\n\
+                    void main() { terminateInvocation; }\n";
+        let library = replaced(device, &[("test/constant.frag", text)]).unwrap();
+        let target = color_target(device, "target", vk::Format::R32_SFLOAT, 4, 4);
+        let ends = Pass::graphics("ends", "", "common/fullscreen.vert", "test/constant.frag");
+        let text = message(ends.color(&target, BLACK, Blend::Replace).build(&library));
+        assert!(text.contains("test/constant.frag: it wants SPIR-V extension SPV_KHR_terminate_invocation"), "{text}");
     });
 }

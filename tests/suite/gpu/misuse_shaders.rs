@@ -7,13 +7,21 @@ use std::sync::Arc;
 
 use ash::vk;
 use fumarole::gpu::{
-    Blend, Compiler, DepthTest, Device, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Sampler, ShaderLibrary,
-    Topology,
+    Blend, Compiler, DepthTest, Device, Error, Feature, Image, ImageDesc, ImageView, Load, Mode, Pass, Sampler,
+    ShaderLibrary, Topology,
 };
 
 use super::fixtures::{BLACK, Vertex, color_target, paint, paint_pass, run, shaders, storage_buffer, texels};
 use super::misuse::message;
 use crate::common::gpu_test;
+
+fumarole::host_block! {
+    /// `test/splat-point.vert`
+    struct Splat {
+        place: [f32; 2],
+        paint: [f32; 4],
+    }
+}
 
 /// The shaders that are built in, but for those of these names.
 pub fn replaced(device: &Arc<Device>, shaders: &[(&str, &str)]) -> Result<ShaderLibrary, Error> {
@@ -265,6 +273,27 @@ fn inputs_and_outputs_have_locations_of_their_own() {
         let text = "layout(location = 0, component = 1) out vec2 target;\nvoid main() { target = vec2(1.0); }\n";
         let error = message(replaced(device, &[(FRAGMENT, text)]));
         assert!(error.contains("`target` takes a component; give it a location of its own"), "{error}");
+    });
+}
+
+#[test]
+fn geometry_stages_emit_something() {
+    gpu_test(|device| {
+        let text = "layout(points) in;\nlayout(triangle_strip, max_vertices = 0) out;\n\
+                    layout(location = 0) in vec4 colour[];\nlayout(location = 0) out vec4 quad_colour;\n\
+                    void main() { quad_colour = colour[0]; }\n";
+        let library = replaced(device, &[("test/strip.geom", text)]).unwrap();
+        let target = color_target(device, "target", vk::Format::R8G8B8A8_UNORM, 4, 4);
+        let splats = storage_buffer(device, "splats", &[0.0; 6]);
+        let strip = Pass::graphics("strip", "", "test/splat-point.vert", "test/splat.frag").geometry("test/strip.geom");
+        let strip = strip.vertices::<Splat>(&splats).topology(Topology::Points);
+        let outcome = strip.color(&target, BLACK, Blend::Replace).build(&library);
+        // Without such stages it is refused for the want of them.
+        if device.physical().has(Feature::GeometryShader) {
+            assert_eq!(message(outcome), "pass strip: its geometry shader test/strip.geom emits no vertices");
+        } else {
+            assert!(matches!(outcome, Err(Error::MissingFeature { .. })));
+        }
     });
 }
 
