@@ -53,38 +53,59 @@ pub enum CommandUse {
 
 /// The interface.
 pub struct Interface {
+    /// Names of the papers that there are.
     pub(super) papers: Vec<&'static str>,
+    /// Name of the paper that is shown.
     pub(super) paper: String,
+    /// The state of the worker, as it has told.
     pub(super) session: Session,
+    /// Values that the worker has yet to hear of.
     pub(super) sent: Sent,
+    /// Panels, theme and scale, kept from one start to the next.
     pub(super) layout: Layout,
+    /// Textures of the pictures that are shown.
     pub(super) pictures: Pictures,
+    /// Contents of the middle of the window.
     pub(super) shown: Shown,
     /// Index of the pass that is looked at.
     pub(super) pass: Option<usize>,
+    /// The intermediate target that is looked at.
     pub(super) target: Option<TargetChoice>,
+    /// Number of passes after which the frame ends; none for a whole frame.
     pub(super) after: Option<u32>,
+    /// Kinds of frames that are measured while the clock stands.
     pub(super) measure: MeasureChoice,
+    /// Zoom and place of the picture.
     pub(super) picture_view: picture_view::PictureView,
+    /// Zoom, place and range of the target.
     pub(super) target_view: target_view::TargetView,
+    /// The camera while it moves.
     pub(super) flight: camera::Flight,
+    /// Text that is being typed into fields of parameters.
     pub(super) fields: parameters_panel::Fields,
+    /// Text that is being typed for files to keep.
     pub(super) saving: Saving,
+    /// The benchmark that runs, or ran last.
     pub(super) bench: Bench,
+    /// The frame's number while it is being typed.
     pub(super) frame_text: Option<String>,
+    /// Use of the next answer with a command line.
     pub(super) command_use: CommandUse,
     /// A line for the user: what was copied or written.
     pub(super) note: Option<String>,
     /// When it was made.
     pub(super) opened: Instant,
+    /// The table of keys is open.
     pub(super) has_keys: bool,
     /// Width and height of the window in points.
     screen: Vec2,
+    /// The plots of times stay as they are.
     pub(super) is_plot_paused: bool,
     /// Line under the picture: place and value at the pointer.
     pub(super) pointed: String,
-    /// The window's own last times: of frames whose panels were laid out, and of frames that showed new pictures alone.
+    /// The window's own last times in milliseconds, of frames whose panels were laid out.
     pub(super) interface_ms: VecDeque<f32>,
+    /// As `interface_ms`, of frames that showed new pictures alone.
     pub(super) pictures_ms: VecDeque<f32>,
     /// Requests at the start, once the worker is ready.
     first: Vec<Request>,

@@ -1,5 +1,5 @@
-//! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document, passes in
-//! files of their names, and no test's files in the repository.
+//! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document and leave
+//! no field out, passes in files of their names, and no test's files in the repository.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -106,6 +106,28 @@ fn doc_comments_name_what_they_document() {
         }
     }
     assert!(questions.is_empty(), "{}", questions.join("\n"));
+}
+
+#[test]
+fn fields_that_others_see_are_documented() {
+    let mut bare = Vec::new();
+    for path in sources("src") {
+        let text = fs::read_to_string(&path).unwrap();
+        let (mut in_struct, mut is_documented) = (false, false);
+        for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+            let is_seen = line.starts_with("pub ") || line.starts_with("pub(");
+            let opens = line.split_whitespace().any(|word| word == "struct") && line.ends_with('{');
+            if !line.starts_with("//") && opens {
+                in_struct = true;
+            } else if line == "}" {
+                in_struct = false;
+            } else if in_struct && is_seen && !is_documented {
+                bare.push(format!("{}:{number}: {line}", path.display()));
+            }
+            is_documented = line.starts_with("///") || (line.starts_with("#[") && is_documented);
+        }
+    }
+    assert!(bare.is_empty(), "{}", bare.join("\n"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Jobs of a window beside frames: limits, memory, command lines, files.
+//! Jobs of a window beside frames: times, limits, memory, command lines, files.
 
 use std::path::Path;
 
@@ -11,7 +11,9 @@ use crate::gpu::physical::DeviceType;
 use crate::gpu::{Mode, RenderDoc};
 use crate::measure::study::Study;
 use crate::measure::{Error, limits};
-use crate::window::protocol::{DeviceLimits, Event, Keep, Memory, Progress, Request, ResourceMemory, Work};
+use crate::window::protocol::{
+    DeviceLimits, Event, Keep, MeasureChoice, Memory, Progress, Request, ResourceMemory, Work,
+};
 
 impl<S: Study> State<S> {
     /// Does what a request wants done beside frames.
@@ -56,6 +58,31 @@ impl<S: Study> State<S> {
             _ => return Ok(()),
         };
         self.outbox.tell(&event);
+        Ok(())
+    }
+
+    /// The side and the mode of the next frame that is recorded for times alone: while the clock stands.
+    pub(super) fn measured(&self) -> Option<(usize, Mode)> {
+        let MeasureChoice { times, counters } = self.wanted.measure;
+        if self.clock.is_playing {
+            return None;
+        }
+        let wanted = |(index, of): (usize, &Times)| Some((index, of.wanted(times, counters)?));
+        // In turn, so that drift hits all alike.
+        let lacking = self.times.iter().enumerate().filter_map(wanted);
+        lacking.min_by_key(|(index, _)| (self.times[*index].taken(), *index))
+    }
+
+    /// Records that frame.
+    ///
+    /// # Errors
+    /// Of a lost device.
+    pub(super) fn measure(&mut self, index: usize, mode: Mode) -> Result<(), Error> {
+        let number = self.clock.number();
+        self.share_device(false);
+        let Some(sample) = self.draw(index, number, None, (mode, true))? else { return Ok(()) };
+        self.times[index].take(mode, &sample, self.wanted.measure.times.max(1));
+        self.tell_times();
         Ok(())
     }
 

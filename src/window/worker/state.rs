@@ -27,9 +27,13 @@ const SAVING: Duration = Duration::from_millis(60);
 /// The worker.
 pub struct State<S: Study> {
     // Before the machine, which they are made on.
+    /// Pictures side by side, each with its paper's set-up.
     pub(super) sides: Vec<Side<S>>,
+    /// Shader libraries, and the watch over their folder.
     pub(super) shaders: Shaders,
+    /// The device with its recorder.
     pub(super) machine: Machine,
+    /// Options of the machine, as they were given.
     pub(super) options: MachineOptions,
     /// The choice that is asked for.
     pub(super) choice: Choice,
@@ -37,17 +41,29 @@ pub struct State<S: Study> {
     pub(super) made: Option<Choice>,
     /// Shaders that were compiled anew since, and what was made of them.
     pub(super) replaced: Option<(Libraries, Option<Choice>)>,
+    /// Wishes of the window: target, measurements, end of the frame.
     pub(super) wanted: Wanted,
+    /// Time of the paper.
     pub(super) clock: Clock,
+    /// Measured times of each side.
     pub(super) times: Vec<Times>,
+    /// Events to the window.
     pub(super) outbox: Outbox,
+    /// Requests of the window.
     pub(super) inbox: Inbox,
+    /// The file that pictures go through.
     pub(super) exchange: Exchange,
+    /// Number of the last frame that was told.
     pub(super) serial: u64,
+    /// Number of the last frame that the window has taken.
     pub(super) taken: u64,
+    /// Number of the last request that was heeded.
     pub(super) heeds: u64,
+    /// The sides are not of the choice that is asked for.
     pub(super) needs_build: bool,
+    /// The frame that is shown is not of the wishes.
     pub(super) needs_frame: bool,
+    /// No frame was shown since the sides were made.
     pub(super) is_new: bool,
     /// Number of the frame that is shown.
     pub(super) shown: u32,
@@ -55,8 +71,11 @@ pub struct State<S: Study> {
     pub(super) is_replaying: bool,
     /// The shown part of a frame has changed since the last was told.
     pub(super) wants_more: bool,
+    /// Requests that take long, in turn.
     pub(super) jobs: Vec<Numbered>,
+    /// Warnings that were told.
     pub(super) warned: Vec<String>,
+    /// Milliseconds of each side's last plain frame.
     pub(super) frame_ms: Vec<f64>,
     /// The device's own, once they are measured.
     pub(super) limits: Option<Limits>,
@@ -459,27 +478,6 @@ impl<S: Study> State<S> {
     pub(super) fn share_device(&mut self, is_wanted: bool) {
         let is_cpu = self.machine.device.physical().device_type == DeviceType::Cpu;
         self.machine.recorder.submit_by_pass(is_wanted && !is_cpu);
-    }
-
-    /// The side and the mode of the next frame that is recorded for times alone: while the clock stands.
-    fn measured(&self) -> Option<(usize, Mode)> {
-        let MeasureChoice { times, counters } = self.wanted.measure;
-        if self.clock.is_playing {
-            return None;
-        }
-        let wanted = |(index, of): (usize, &Times)| Some((index, of.wanted(times, counters)?));
-        // In turn, so that drift hits all alike.
-        let lacking = self.times.iter().enumerate().filter_map(wanted);
-        lacking.min_by_key(|(index, _)| (self.times[*index].taken(), *index))
-    }
-
-    fn measure(&mut self, index: usize, mode: Mode) -> Result<(), Error> {
-        let number = self.clock.number();
-        self.share_device(false);
-        let Some(sample) = self.draw(index, number, None, (mode, true))? else { return Ok(()) };
-        self.times[index].take(mode, &sample, self.wanted.measure.times.max(1));
-        self.tell_times();
-        Ok(())
     }
 
     fn tell_validation(&self) {
