@@ -1,5 +1,6 @@
 //! `tiles-*` and their `fragments`: the triangles of tiles of 8 x 8 pixels, and what they leave in each pixel.
 
+mod fragments;
 mod tiles_count;
 mod tiles_empty;
 mod tiles_fill;
@@ -8,6 +9,7 @@ mod tiles_sum;
 
 use std::sync::Arc;
 
+use self::fragments::fragments;
 use self::tiles_count::tiles_count;
 use self::tiles_empty::tiles_empty;
 use self::tiles_fill::tiles_fill;
@@ -94,30 +96,6 @@ impl Scope<'_> {
             .with("Triangles", &piece.triangles)
             .with("counts", &self.scene.counts)
     }
-}
-
-/// The pass `fragments` by tiles; `losses` takes what lists of the nearest fragments alone leave out.
-fn fragments(
-    context: &Context<'_>,
-    scope: &Scope<'_>,
-    piece: &Piece,
-    losses: Option<&Arc<Buffer>>,
-) -> Result<Pass, Error> {
-    let Scope { scene, lists, .. } = scope;
-    let shader = match context.parameters.lists.nearest() {
-        Some(_) => "gas/fragments-nearest.comp",
-        None => "gas/fragments-tiles.comp",
-    };
-    let pass = scope
-        .pass_of_chunks("fragments", shader, piece)
-        .with("Volumes", &scene.volumes)
-        .with("Offsets", &scene.offsets)
-        .with("Heads", &lists.heads)
-        .with("Links", &lists.links)
-        .with("Surfaces", &lists.surfaces)
-        .with("Colors", &lists.colors);
-    let pass = losses.into_iter().fold(pass, |pass, losses| pass.with("Losses", losses));
-    pass.with("TilePixels", scope.pixels).with("Counters", &lists.counters).build(context.shaders)
 }
 
 /// Tiles of a band of full height.
