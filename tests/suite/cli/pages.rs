@@ -1,4 +1,5 @@
-//! The papers' pages have the tables of options that the declarations make; `FUMAROLE_BLESS=1` writes them.
+//! The papers' pages have the tables of options that the declarations make, which `FUMAROLE_BLESS=1` writes, and the README the
+//! passes of each variant.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,6 +7,8 @@ use std::path::PathBuf;
 use fumarole::cli::{axes_table, options_table};
 use fumarole::measure::study::{Study, Visitor};
 use fumarole::papers;
+
+use super::program::fumarole;
 
 struct Pages;
 
@@ -38,4 +41,30 @@ fn check(paper: &str, what: &str, table: &str) -> Result<(), String> {
 #[test]
 fn pages_list_the_options_and_axes_that_are_declared() {
     assert_eq!(papers::each(&mut Pages), Ok(()));
+}
+
+/// Names in backticks.
+fn quoted(cell: &str) -> Vec<&str> {
+    cell.split('`').skip(1).step_by(2).collect()
+}
+
+#[test]
+fn the_readme_lists_the_passes_of_each_variant() {
+    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let (_, table) = page.split_once("## Papers, passes, shaders").unwrap();
+    let (table, _) = table.split_once("## The window").unwrap();
+    let (mut paper, mut compared) = ("", 0);
+    for row in table.lines().filter(|line| line.starts_with("| ")) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        paper = quoted(cells[1]).first().copied().unwrap_or(paper);
+        let passes = cells[3].split(';').next().unwrap_or_default();
+        // Others say in words how they differ from a row above.
+        let ([variant], true) = (&quoted(cells[2])[..], passes.starts_with('`')) else { continue };
+        let listed = fumarole(&format!("{paper} passes --json --variant {variant}")).on_test_device().run().succeeded();
+        let listed = listed.json();
+        let names = listed[0]["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap());
+        assert_eq!(quoted(passes), names.collect::<Vec<_>>(), "{paper} {variant}");
+        compared += 1;
+    }
+    assert!(compared >= 15, "{compared} rows");
 }

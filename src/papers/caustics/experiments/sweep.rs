@@ -53,7 +53,7 @@ pub const CHAPTER_6: Comparison = Comparison {
 
 /// The same with smart slicing, which the level map has as a variant of its own.
 pub const CHAPTER_6_SMART: Comparison = Comparison {
-    title: "Sections 6.1 and 6.3: culled --smart and hit against level-map-smart",
+    title: "Sections 6.1 and 6.3: culled with smart planes, and hit, against level-map-smart",
     base: Variant::LevelMapSmart,
     ..CHAPTER_6
 };
