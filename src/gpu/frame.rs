@@ -55,6 +55,9 @@ pub(super) enum End {
     Reached,
 }
 
+/// Records the commands of a pass, and tells their number and what they fetch.
+type PassBody<'a> = dyn FnMut(&Device, vk::CommandBuffer) -> Result<(u32, Fetched), Error> + 'a;
+
 impl Frame<'_> {
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let r = &mut *self.recorder;
@@ -176,12 +179,22 @@ impl Frame<'_> {
     /// [`Error::Pass`] for a draw beyond what is bound, or with other constants than declared, or none;
     /// [`Error::ReadBeforeWrite`]; [`Error::InUse`] for a resource of another unfinished frame.
     pub fn graphics(&mut self, pass: &Pass, body: impl FnOnce(&mut Draw<'_>)) -> Result<(), Error> {
+        let mut body = Some(body);
+        self.draw(pass, &mut |draw| {
+            if let Some(body) = body.take() {
+                body(draw);
+            }
+        })
+    }
+
+    /// As [`Frame::graphics`], compiled once and not for each body.
+    fn draw(&mut self, pass: &Pass, body: &mut dyn FnMut(&mut Draw<'_>)) -> Result<(), Error> {
         let Body::Graphics { render_pass, framebuffer, extent, clears, vertices, indices, bounds, .. } =
             &pass.inner.body
         else {
             return Err(not_a(pass, "graphics"));
         };
-        self.envelope(pass, |device, commands| {
+        self.envelope(pass, &mut |device, commands| {
             let area = vk::Rect2D::default().extent(*extent);
             let begin = vk::RenderPassBeginInfo::default()
                 .render_pass(render_pass.raw)
@@ -226,8 +239,18 @@ impl Frame<'_> {
     /// # Errors
     /// [`Error::Limit`] for more workgroups than the device takes; otherwise as [`Frame::graphics`].
     pub fn compute(&mut self, pass: &Pass, body: impl FnOnce(&mut Dispatch<'_>)) -> Result<(), Error> {
+        let mut body = Some(body);
+        self.dispatch(pass, &mut |dispatch| {
+            if let Some(body) = body.take() {
+                body(dispatch);
+            }
+        })
+    }
+
+    /// As [`Frame::compute`], compiled once and not for each body.
+    fn dispatch(&mut self, pass: &Pass, body: &mut dyn FnMut(&mut Dispatch<'_>)) -> Result<(), Error> {
         let Body::Compute { workgroup, .. } = pass.inner.body else { return Err(not_a(pass, "compute")) };
-        self.envelope(pass, |device, commands| {
+        self.envelope(pass, &mut |device, commands| {
             let mut dispatch = Dispatch::new(device, commands, &pass.inner, workgroup);
             body(&mut dispatch);
             Ok((dispatch.finish()?, Fetched::default()))
@@ -242,7 +265,7 @@ impl Frame<'_> {
         let Body::Copy { from, to } = &pass.inner.body else { return Err(not_a(pass, "copy")) };
         transfer::check_copy(pass.info().name, from, to)?;
         transfer::check_uses(&pass.inner.device, pass.info().name, &pass.inner.uses)?;
-        self.envelope(pass, |device, commands| {
+        self.envelope(pass, &mut |device, commands| {
             transfer::record_copy(&device.raw, commands, from, to);
             Ok((1, Fetched::default()))
         })?;
@@ -327,11 +350,7 @@ impl Frame<'_> {
         Ok(())
     }
 
-    fn envelope(
-        &mut self,
-        pass: &Pass,
-        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<(u32, Fetched), Error>,
-    ) -> Result<(), Error> {
+    fn envelope(&mut self, pass: &Pass, body: &mut PassBody<'_>) -> Result<(), Error> {
         self.check_open()?;
         self.admit(pass.info())?;
         self.part_from_last(pass.info())?;
@@ -350,11 +369,7 @@ impl Frame<'_> {
         Ok(())
     }
 
-    fn record(
-        &mut self,
-        pass: &Pass,
-        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<(u32, Fetched), Error>,
-    ) -> Result<(), Error> {
+    fn record(&mut self, pass: &Pass, body: &mut PassBody<'_>) -> Result<(), Error> {
         let name = pass.info().name;
         self.recorder.commands.device.check_own(&pass.inner.device, name, name)?;
         let at = self.sample_of(pass.info());

@@ -266,15 +266,25 @@ impl Drop for Pipeline {
 /// # Errors
 /// [`Error::Pass`] naming the first field that differs.
 pub(crate) fn check_constants<T: HostBlock>(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
+    check_block(pass, modules, T::NAME, size_of::<T>(), T::fields())
+}
+
+fn check_block(
+    pass: &str,
+    modules: &[Arc<ShaderModule>],
+    name: &str,
+    size_bytes: usize,
+    fields: &[(&str, usize, usize)],
+) -> Result<(), Error> {
     let problem = |problem: String| Error::Pass { pass: pass.to_owned(), problem };
     let mut found = false;
     for module in modules {
         if let Some(block) = &module.interface.push_constants {
             found = true;
             block
-                .check_layout(T::NAME, std::mem::size_of::<T>(), T::fields())
+                .check_layout(name, size_bytes, fields)
                 .map_err(|e| problem(format!("push constants of shader {}: {e}", module.name)))?;
         }
     }
-    if found { Ok(()) } else { Err(problem(format!("its shaders take no push constants, {} is given", T::NAME))) }
+    if found { Ok(()) } else { Err(problem(format!("its shaders take no push constants, {name} is given"))) }
 }
