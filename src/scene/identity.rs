@@ -4,14 +4,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::formats::gltf_buffer::percent_decoded;
-use super::{voxels, world_file};
+use super::{height_map, voxels, world_file};
 use crate::{content, file};
 
 /// Endings of the files that a raster may be read with.
 const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
 
 /// SHA-256 of a file, or of all of a folder, in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
-/// projection of a raster, world file of a picture, samples of a volume), that of all their digests in order.
+/// projection of a raster, parts of a mosaic, world file of a picture, samples of a volume), that of all their digests in order.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -42,6 +42,9 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     if ending == "png" {
         let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
         return beside.into_iter().find(|file| file.is_file()).into_iter().collect();
+    }
+    if ending == "vrt" {
+        return height_map::mosaic_parts(path);
     }
     let samples = voxels::companions(path);
     if !samples.is_empty() {

@@ -346,8 +346,8 @@ impl Study for Setup {
         let maps = [
             Parameter::new("map", field!(Setup.maps))
                 .help(
-                    "Height map: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file, or a \
-                     folder of .hgt files that lie side by side; the terrains of several are united",
+                    "Height map: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file, a .vrt \
+                     mosaic of such files, or a folder of .hgt files that lie side by side; the terrains of several are united",
                 )
                 .cost(Cost::Buffers)
                 .everyday()

@@ -107,6 +107,19 @@ impl HeightMap {
         self.coordinates
     }
 
+    /// All heights, metres, row by row; no number where the source left a sample void.
+    pub(super) fn known_heights(&self) -> Vec<f32> {
+        let mut heights = match &self.samples {
+            Samples::Steps { values, origin_m, step_m } => {
+                values.iter().map(|value| origin_m + step_m * f32::from(*value)).collect()
+            }
+            Samples::Float(heights) => heights.clone(),
+        };
+        let voids = self.voids.iter().flat_map(VoidSamples::places);
+        voids.for_each(|place| heights[place] = f32::NAN);
+        heights
+    }
+
     /// Number of samples that the source left void.
     pub fn voids(&self) -> u64 {
         self.voids.as_ref().map_or(0, VoidSamples::count)

@@ -14,6 +14,7 @@ mod voids;
 mod volcano;
 
 pub use coordinates::Coordinates;
+pub(in crate::scene) use formats::vrt::parts as mosaic_parts;
 pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
 pub use source::HeightMapSource;

@@ -17,7 +17,8 @@ pub enum HeightMapSource {
     MaungaWhau,
     /// The Jacksboro fault in Tennessee: 403 x 344 samples, 3 arc-seconds apart.
     Jacksboro,
-    /// An SRTM tile or a folder of them, an ESRI raster with its header, a GeoTIFF, a PNG or an Esri ASCII grid.
+    /// An SRTM tile or a folder of them, an ESRI raster with its header, a GeoTIFF, a PNG, an Esri ASCII grid or a mosaic of such
+    /// files (.vrt).
     File(PathBuf),
 }
 

@@ -8,6 +8,7 @@ mod hgt;
 mod hgt_folder;
 mod placement;
 mod png;
+pub(in crate::scene) mod vrt;
 
 use super::HeightMap;
 use crate::scene::error::{Asset, Fault, Place};
@@ -16,7 +17,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
-const KNOWN_ENDINGS: &str = ".hgt, .hdr, .bil, .bsq, .dem, .asc, .tif, .tiff, .png";
+const KNOWN_ENDINGS: &str = ".hgt, .hdr, .bil, .bsq, .dem, .asc, .tif, .tiff, .png, .vrt";
 const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// TIFF and BigTIFF, little and big endian.
 const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
@@ -30,6 +31,9 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if matches!(ending.as_str(), "hdr" | "bil" | "bsq" | "dem") {
         return esri::load(path);
+    }
+    if ending == "vrt" {
+        return vrt::load(path);
     }
     let (mut file, size_bytes) = file::open(path, Asset::HeightMap)?;
     let parsed = match ending.as_str() {

@@ -1,0 +1,395 @@
+//! Mosaics of GDAL: a virtual raster in XML whose parts are other files, sample by sample. Nothing is resampled or scaled.
+
+use super::{load as load_file, malformed};
+use crate::file as any_file;
+use crate::scene::binary::allocate;
+use crate::scene::error::{Asset, Fault, Place};
+use crate::scene::height_map::grid::{Grid, Placement};
+use crate::scene::height_map::map::check_size;
+use crate::scene::height_map::{Coordinates, Geographic};
+use crate::scene::{Error, HeightMap, Samples, file};
+use glam::DVec2;
+use roxmltree::{Document, Node};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Some hundred thousand parts.
+const MOST_BYTES: u64 = 256 << 20;
+/// A raster may be so much larger than what its parts cover, beside some samples that any may have.
+const MOST_EMPTY: u64 = 16;
+const ANY_SAMPLES: u64 = 16 << 20;
+
+/// A mosaic as its file describes it.
+struct Mosaic {
+    size: (u32, u32),
+    no_data: Option<f64>,
+    /// Steps east and south between samples.
+    step: Option<DVec2>,
+    parts: Vec<Part>,
+}
+
+/// A rectangle of another file, and its place.
+struct Part {
+    /// In the mosaic's file.
+    line: usize,
+    name: String,
+    no_data: Option<f64>,
+    /// First column and row in the other file, and here.
+    from: (u32, u32),
+    to: (u32, u32),
+    size: (u32, u32),
+}
+
+/// Reads a mosaic with all its parts.
+pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
+    let text = any_file::read_text(path, MOST_BYTES).map_err(|source| file::failed(path, Asset::HeightMap, source))?;
+    let mosaic = Mosaic::parse(&text).map_err(|fault| malformed(path, fault))?;
+    mosaic.assemble(path)
+}
+
+/// The files of a mosaic's parts that are there.
+pub(in crate::scene) fn parts(path: &Path) -> Vec<PathBuf> {
+    let text = any_file::read_text(path, MOST_BYTES).unwrap_or_default();
+    let names: BTreeSet<String> = Mosaic::parse(&text)
+        .map_or_else(|_| BTreeSet::new(), |mosaic| mosaic.parts.into_iter().map(|part| part.name).collect());
+    names.iter().filter_map(|name| beside(path, name).ok()).filter(|file| file.is_file()).collect()
+}
+
+/// The file that a mosaic names, which lies in its folder or below.
+fn beside(path: &Path, name: &str) -> std::io::Result<PathBuf> {
+    any_file::below(path.parent().unwrap_or(Path::new("")), Path::new(name))
+}
+
+impl Mosaic {
+    fn parse(text: &str) -> Result<Self, Fault> {
+        let document = Document::parse(text).map_err(|error| Fault::foreign(Place::Whole, &error))?;
+        let root = document.root_element();
+        if !root.has_tag_name("VRTDataset") {
+            return Err(fault(root, "it is no VRTDataset"));
+        }
+        let (width, height): (u64, u64) = (attribute(root, "rasterXSize")?, attribute(root, "rasterYSize")?);
+        check_size(width, height).map_err(|reason| fault(root, reason))?;
+        let size = (width as u32, height as u32);
+        let step = child(root, "GeoTransform").map(step_of).transpose()?;
+        let mut bands = root.children().filter(|node| node.has_tag_name("VRTRasterBand"));
+        let Some(band) = bands.next() else { return Err(fault(root, "it has no VRTRasterBand")) };
+        if let Some(other) = bands.next() {
+            return Err(fault(other, "it is a second band; a height map has one"));
+        }
+        if let Some(kind) = band.attribute("subClass") {
+            return Err(fault(band, format!("its subClass is {kind:?}; plain mosaics alone are read")));
+        }
+        let no_data = child(band, "NoDataValue").map(number).transpose()?;
+        let sources = band.children().filter(|node| node.tag_name().name().ends_with("Source"));
+        let parts: Vec<Part> = sources.map(|node| Part::parse(node, size)).collect::<Result<_, _>>()?;
+        if parts.is_empty() {
+            return Err(fault(band, "it has no SimpleSource"));
+        }
+        let places: BTreeSet<_> = parts.iter().map(|part| (part.to, part.size)).collect();
+        let covered: u64 = places.iter().map(|(_, (columns, rows))| u64::from(*columns) * u64::from(*rows)).sum();
+        if width * height > MOST_EMPTY * covered + ANY_SAMPLES {
+            let reason =
+                format!("its parts cover {covered} of {width} x {height} samples; take those that lie together");
+            return Err(fault(root, reason));
+        }
+        Ok(Mosaic { size, no_data, step, parts })
+    }
+
+    fn assemble(&self, path: &Path) -> Result<HeightMap, Error> {
+        let (width, height) = (self.size.0 as usize, self.size.1 as usize);
+        let mut values = allocate::<f32>(width * height).map_err(|fault| malformed(path, fault))?;
+        values.fill(f32::NAN);
+        let (mut integral, mut placement) = (true, None);
+        for part in &self.parts {
+            let refused = |reason: String| malformed(path, Fault::new(Place::Line(part.line), reason));
+            let file = beside(path, &part.name).map_err(|error| refused(format!("{}: {error}", part.name)))?;
+            if file.is_dir() || file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt")) {
+                return Err(refused(format!("{}: a mosaic's parts are files of heights", part.name)));
+            }
+            let map = load_file(&file)?;
+            let ((column, row), (columns, rows)) = (part.from, part.size);
+            if column + columns > map.width() || row + rows > map.height() {
+                let (wide, high) = (map.width(), map.height());
+                return Err(refused(format!("its SrcRect leaves {}, which has {wide} x {high} samples", part.name)));
+            }
+            integral &= matches!(map.samples(), Samples::Steps { step_m: 1.0, .. });
+            let here = self.placement(&map, part).map_err(refused)?;
+            match placement {
+                None => placement = Some(here),
+                Some(first) if is_one(first, here) => {}
+                Some(_) => {
+                    return Err(refused(format!(
+                        "{} does not lie where its DstRect says, beside the first part",
+                        part.name
+                    )));
+                }
+            }
+            let heights = map.known_heights();
+            let is_void = |height: f32| {
+                let is = |no_data: Option<f64>| {
+                    no_data.is_some_and(|no_data| f64::from(height) == no_data || height == no_data as f32)
+                };
+                height.is_nan() || is(self.no_data) || is(part.no_data)
+            };
+            for line in 0..rows as usize {
+                let first = (row as usize + line) * map.width() as usize + column as usize;
+                let to = (part.to.1 as usize + line) * width + part.to.0 as usize;
+                let pairs = values[to..][..columns as usize].iter_mut().zip(&heights[first..][..columns as usize]);
+                pairs.filter(|(_, height)| !is_void(**height)).for_each(|(value, height)| *value = *height);
+            }
+        }
+        let placement = placement.unwrap_or(Placement::Unknown);
+        let (width, height) = self.size;
+        Grid { width, height, values, integral, no_data: Some(f64::NAN), placement }
+            .into_map()
+            .map_err(|fault| malformed(path, fault))
+    }
+
+    /// The mosaic's place as one of its parts has it.
+    fn placement(&self, map: &HeightMap, part: &Part) -> Result<Placement, String> {
+        let Some(Coordinates { north_west, step }) = map.coordinates() else { return Ok(Placement::Unknown) };
+        if self.step.is_some_and(|own| ((own - step) / step).abs().max_element() > 1e-6) {
+            return Err(format!("the samples of {} are not as far apart as its GeoTransform says", part.name));
+        }
+        let offset = |to: u32, from: u32| f64::from(to) - f64::from(from);
+        let moved = DVec2::new(offset(part.to.0, part.from.0), -offset(part.to.1, part.from.1));
+        let north_west = north_west - moved * step;
+        Ok(match map.geographic() {
+            Some(_) => {
+                Placement::Degrees(Geographic { west_deg: north_west.x, north_deg: north_west.y, step_deg: step })
+            }
+            None => Placement::Metres(map.spacing_m(), Some(Coordinates { north_west, step })),
+        })
+    }
+}
+
+/// True where two parts say the same of the mosaic, to a hundredth of a sample.
+fn is_one(a: Placement, b: Placement) -> bool {
+    let near = |a: DVec2, b: DVec2, step: DVec2, other: DVec2| {
+        ((a - b) / step).abs().max_element() < 0.01 && ((step - other) / step).abs().max_element() < 1e-6
+    };
+    match (a, b) {
+        (Placement::Unknown, Placement::Unknown) => true,
+        (Placement::Degrees(a), Placement::Degrees(b)) => {
+            let corner = |place: Geographic| DVec2::new(place.west_deg, place.north_deg);
+            near(corner(a), corner(b), a.step_deg, b.step_deg)
+        }
+        (Placement::Metres(_, Some(a)), Placement::Metres(_, Some(b))) => {
+            near(a.north_west, b.north_west, a.step, b.step)
+        }
+        _ => false,
+    }
+}
+
+impl Part {
+    fn parse(node: Node<'_, '_>, (width, height): (u32, u32)) -> Result<Self, Fault> {
+        let kind = node.tag_name().name();
+        if !["SimpleSource", "ComplexSource"].contains(&kind) {
+            return Err(fault(node, format!("it is a {kind}; SimpleSource and ComplexSource are read")));
+        }
+        let plain = ["SourceFilename", "SourceBand", "SourceProperties", "SrcRect", "DstRect", "NODATA", "OpenOptions"];
+        if let Some(other) =
+            node.children().find(|child| child.is_element() && !plain.contains(&child.tag_name().name()))
+        {
+            return Err(fault(
+                other,
+                format!("{} changes heights; write plain ones with gdal_translate", other.tag_name().name()),
+            ));
+        }
+        let name = required(node, "SourceFilename")?;
+        if name.attribute("relativeToVRT") != Some("1") {
+            return Err(fault(
+                name,
+                "it is not relative to the mosaic; put the mosaic beside its parts and build it there",
+            ));
+        }
+        if let Some(band) = child(node, "SourceBand").filter(|band| text(*band) != "1") {
+            return Err(fault(band, format!("it is band {:?}; a height map has one", text(band))));
+        }
+        let (source, here) = (required(node, "SrcRect")?, required(node, "DstRect")?);
+        let whole = |rectangle: Node<'_, '_>, name: &str| -> Result<u32, Fault> {
+            let value: f64 = attribute(rectangle, name)?;
+            let is_whole = value.fract() == 0.0 && (0.0..=f64::from(u16::MAX) + 1.0).contains(&value);
+            if is_whole {
+                Ok(value as u32)
+            } else {
+                Err(fault(rectangle, format!("{name} is {value}; whole samples alone are read")))
+            }
+        };
+        let pair =
+            |rectangle: Node<'_, '_>, x: &str, y: &str| Ok::<_, Fault>((whole(rectangle, x)?, whole(rectangle, y)?));
+        let (size, other) = (pair(source, "xSize", "ySize")?, pair(here, "xSize", "ySize")?);
+        if size != other || size.0 == 0 || size.1 == 0 {
+            let reason =
+                format!("{} x {} samples become {} x {}; nothing is resampled", size.0, size.1, other.0, other.1);
+            return Err(fault(here, reason));
+        }
+        let (from, to) = (pair(source, "xOff", "yOff")?, pair(here, "xOff", "yOff")?);
+        if to.0 + size.0 > width || to.1 + size.1 > height {
+            return Err(fault(here, "it leaves the raster"));
+        }
+        let no_data = child(node, "NODATA").map(number).transpose()?;
+        Ok(Part { line: line(node), name: text(name).to_owned(), no_data, from, to, size })
+    }
+}
+
+/// Steps east and south between samples, of a raster that is not turned.
+fn step_of(node: Node<'_, '_>) -> Result<DVec2, Fault> {
+    let numbers: Vec<f64> = text(node).split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [_, east, turned, _, other, south] if east > 0.0 && south < 0.0 && turned == 0.0 && other == 0.0 => {
+            Ok(DVec2::new(east, -south))
+        }
+        _ => Err(fault(node, "it is not north up")),
+    }
+}
+
+fn child<'a, 'input>(node: Node<'a, 'input>, name: &str) -> Option<Node<'a, 'input>> {
+    node.children().find(|child| child.has_tag_name(name))
+}
+
+fn required<'a, 'input>(node: Node<'a, 'input>, name: &str) -> Result<Node<'a, 'input>, Fault> {
+    child(node, name).ok_or_else(|| fault(node, format!("it has no {name}")))
+}
+
+fn text<'a>(node: Node<'a, '_>) -> &'a str {
+    node.text().unwrap_or_default().trim()
+}
+
+fn number(node: Node<'_, '_>) -> Result<f64, Fault> {
+    text(node).parse().map_err(|_| fault(node, format!("it is {:?}, not a number", shown(text(node)))))
+}
+
+fn attribute<T: FromStr>(node: Node<'_, '_>, name: &str) -> Result<T, Fault> {
+    let value = node.attribute(name).ok_or_else(|| fault(node, format!("it has no {name}")))?;
+    value.parse().map_err(|_| fault(node, format!("{name} is {:?}, not a number of samples", shown(value))))
+}
+
+fn shown(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+fn line(node: Node<'_, '_>) -> usize {
+    node.document().text_pos_at(node.range().start).row as usize
+}
+
+/// A fault of an element, by its line and name.
+fn fault(node: Node<'_, '_>, reason: impl AsRef<str>) -> Fault {
+    Fault::new(Place::Line(line(node)), format!("{}: {}", node.tag_name().name(), reason.as_ref()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// A part of 3 x 2 samples of 10 m, as GDAL writes one.
+    fn part(name: &str, (column, row): (u32, u32), (from, size): ((u32, u32), (u32, u32))) -> String {
+        format!(
+            "<SimpleSource>\n<SourceFilename relativeToVRT=\"1\">{name}</SourceFilename>\n<SourceBand>1</SourceBand>\n\
+             <SrcRect xOff=\"{}\" yOff=\"{}\" xSize=\"{}\" ySize=\"{}\" />\n\
+             <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{}\" ySize=\"{}\" />\n</SimpleSource>\n",
+            from.0, from.1, size.0, size.1, size.0, size.1
+        )
+    }
+
+    fn mosaic((width, height): (u32, u32), parts: &str) -> String {
+        format!(
+            "<VRTDataset rasterXSize=\"{width}\" rasterYSize=\"{height}\">\n\
+             <GeoTransform> 1000.0, 10.0, 0.0, 2000.0, 0.0, -10.0</GeoTransform>\n\
+             <VRTRasterBand dataType=\"Int16\" band=\"1\">\n<NoDataValue>-9999</NoDataValue>\n{parts}</VRTRasterBand>\n</VRTDataset>\n"
+        )
+    }
+
+    /// West and east share a column; the middle's middle sample is void in one and known in the other.
+    fn folder() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        let grid = |name: &str, x: u32, rows: &str| {
+            let head = format!("ncols 3\nnrows 2\nxllcorner {x}\nyllcorner 1980\ncellsize 10\nNODATA_value -9999\n");
+            fs::write(folder.path().join(name), head + rows).unwrap();
+        };
+        grid("west.asc", 1000, "1 2 -9999\n4 5 6\n");
+        grid("east.asc", 1020, "3 7 8\n-9999 -9999 9\n");
+        folder
+    }
+
+    fn load_text(folder: &Path, text: &str) -> Result<HeightMap, Error> {
+        let path = folder.join("all.vrt");
+        fs::write(&path, text).unwrap();
+        super::super::load(&path)
+    }
+
+    #[test]
+    fn parts_lie_where_the_mosaic_says() {
+        let folder = folder();
+        let all = ((0, 0), (3, 2));
+        let parts = part("west.asc", (0, 0), all) + &part("east.asc", (2, 0), all);
+        let map = load_text(folder.path(), &mosaic((5, 2), &parts)).unwrap();
+        assert_eq!((map.width(), map.height(), map.voids()), (5, 2, 1));
+        let row = |row| (0..5).map(|column| map.height_m(column, row)).collect::<Vec<_>>();
+        assert_eq!(row(0), [1.0, 2.0, 3.0, 7.0, 8.0]);
+        assert_eq!([0, 1, 2, 4].map(|column| map.height_m(column, 1)), [4.0, 5.0, 6.0, 9.0]);
+        assert!(matches!(map.samples(), Samples::Steps { step_m: 1.0, .. }));
+        let place = map.coordinates().unwrap();
+        assert_eq!((place.north_west, place.step), (DVec2::new(1005.0, 1995.0), DVec2::splat(10.0)));
+        assert_eq!(map.spacing_m(), DVec2::splat(10.0));
+        // A rectangle of a part, and its place by the part that it comes from.
+        let parts = part("east.asc", (0, 0), ((1, 0), (2, 2)));
+        let map = load_text(folder.path(), &mosaic((2, 2), &parts)).unwrap();
+        assert_eq!((map.height_m(0, 0), map.height_m(1, 0), map.height_m(1, 1)), (7.0, 8.0, 9.0));
+        assert_eq!(map.coordinates().unwrap().north_west, DVec2::new(1035.0, 1995.0));
+        assert_eq!(
+            super::parts(&folder.path().join("all.vrt")),
+            [fs::canonicalize(folder.path().join("east.asc")).unwrap()]
+        );
+    }
+
+    #[test]
+    fn what_would_change_heights_or_lies_elsewhere_is_refused() {
+        let folder = folder();
+        let all = ((0, 0), (3, 2));
+        let (west, east) = (part("west.asc", (0, 0), all), part("east.asc", (2, 0), all));
+        let good = mosaic((5, 2), &(west.clone() + &east));
+        let with = |from: &str, to: &str| good.replacen(from, to, 1);
+        fs::write(folder.path().join("nested.vrt"), &good).unwrap();
+        for (text, expected) in [
+            ("<a>".to_owned(), "all.vrt: "),
+            ("<a/>".to_owned(), "line 1: a: it is no VRTDataset"),
+            (with("rasterXSize=\"5\"", "rasterXSize=\"0\""), "line 1: VRTDataset: it has 0 x 2 samples"),
+            (with("rasterXSize=\"5\"", "rasterXSize=\"x\""), "rasterXSize is \"x\""),
+            (with("rasterXSize=\"5\"", ""), "it has no rasterXSize"),
+            (with("rasterXSize=\"5\"", "rasterXSize=\"4\""), "DstRect: it leaves the raster"),
+            (mosaic((60_000, 60_000), &west), "its parts cover 6 of 60000 x 60000 samples"),
+            (with(" 10.0, 0.0, 2000", " 10.0, 1.0, 2000"), "line 2: GeoTransform: it is not north up"),
+            (with(" 10.0, 0.0, 2000", " 11.0, 0.0, 2000"), "not as far apart as its GeoTransform says"),
+            (with("-9999</NoDataValue>", "none</NoDataValue>"), "NoDataValue: it is \"none\", not a number"),
+            (with("<VRTRasterBand ", "<VRTRasterBand subClass=\"VRTDerivedRasterBand\" "), "its subClass is"),
+            (with("</VRTRasterBand>", "</VRTRasterBand><VRTRasterBand/>"), "it is a second band"),
+            (mosaic((5, 2), ""), "it has no SimpleSource"),
+            (with("relativeToVRT=\"1\"", "relativeToVRT=\"0\""), "line 6: SourceFilename: it is not relative"),
+            (with("<SourceBand>1", "<SourceBand>2"), "it is band \"2\""),
+            (with("<SourceBand>", "<ScaleRatio>2</ScaleRatio><SourceBand>"), "ScaleRatio changes heights"),
+            (good.replace("SimpleSource", "KernelFilteredSource"), "it is a KernelFilteredSource"),
+            (
+                with("<DstRect xOff=\"0\" yOff=\"0\" xSize=\"3\"", "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"4\""),
+                "nothing is resampled",
+            ),
+            (with("<SrcRect xOff=\"0\"", "<SrcRect xOff=\"0.5\""), "xOff is 0.5; whole samples alone"),
+            (
+                with("<SrcRect xOff=\"0\"", "<SrcRect xOff=\"1\""),
+                "line 5: its SrcRect leaves west.asc, which has 3 x 2 samples",
+            ),
+            (with("west.asc", "north.asc"), "north.asc: "),
+            (with("west.asc", "../west.asc"), "../west.asc: it lies outside"),
+            (with("west.asc", "nested.vrt"), "nested.vrt: a mosaic's parts are files of heights"),
+            (
+                mosaic((6, 2), &(west.clone() + &part("east.asc", (3, 0), all))),
+                "east.asc does not lie where its DstRect says",
+            ),
+        ] {
+            let message = load_text(folder.path(), &text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{expected}: {message}");
+        }
+    }
+}
