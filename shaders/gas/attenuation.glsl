@@ -7,11 +7,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/nodes.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    Surface surfaces[];
+    uvec4 surfaces[]; // each a Surface
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    Color colors[];
+    uvec2 colors[]; // each a Color
 };
 
 layout(set = 0, binding = 14, std430) buffer Attenuations {
@@ -23,6 +23,9 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    read_counts();
+    read_volumes();
+    read_lights();
     uint list = list_of(pixel);
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     if (!is_due(LIGHT_ATTENUATION, list)) {
@@ -48,34 +51,35 @@ void main() {
     while (!is_done && !is_stopped) {
         Link link = link_at(f);
         link.next = fragment_at(link.next);
-        Surface surface = surfaces[f];
+        uvec4 surface = surfaces[f];
         bool is_seen = (link.mask & ~covered) != 0u || is_shown_through;
         if (is_seen) {
             vec3 point = frame.eye + ray * mean_depth(link);
-            vec3 normal = unpack_normal(surface.normal);
+            vec3 normal = unpack_normal(surface.x);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
-            while (l < counts.lights && !is_cut) {
+            while (l < light_count && !is_cut) {
+                take_light(l);
                 float passed = 1.0;
-                if (dot(normal, ray_to_light(l, point).direction) > 0.0) {
-                    passed = passed_to_surface(l, point, pixel_index, surface.triangle);
+                if (dot(normal, ray_to_light(point).direction) > 0.0) {
+                    passed = passed_to_surface(l, point, pixel_index, surface.z);
                 }
                 if (!is_cut) {
-                    attenuations[f * counts.lights + l] = 1.0 - passed;
+                    attenuations[f * light_count + l] = 1.0 - passed;
                     l++;
                 }
             }
         }
-        is_stopped = is_cut || (is_seen && l < counts.lights);
+        is_stopped = is_cut || (is_seen && l < light_count);
         if (!is_stopped) {
             if (is_seen) {
                 is_shown_through = false;
                 if (link.next != NONE) {
                     Link next = link_at(link.next);
-                    is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u
+                    is_shown_through = surfaces[link.next].y != surface.y && (link.mask & next.mask) != 0u
                         && fraction_behind(link, next) > 0.0;
                 }
             }
-            if (opacity_of(colors[f]) >= 1.0) {
+            if (opacity_of(Color(0u, colors[f].y)) >= 1.0) {
                 covered |= link.mask;
             }
             f = link.next;

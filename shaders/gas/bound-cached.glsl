@@ -5,7 +5,7 @@
 
 float sample_at(uint v, uint index) {
     uint n = counts.cache;
-    return density_cache[v * n * n * n + index];
+    return density_cache[v * n * n * n + index].x;
 }
 
 #include "gas/bound-samples.glsl"

@@ -13,25 +13,25 @@ const uint HYPERTEXTURE = 5u;
 
 // The greatest density between two corners of a box, in units of half the volume's box from its middle.
 float gas_bound(uint v, vec3 low, vec3 high) {
-    uint kind = volumes[v].density_function;
-    float opaque = volumes[v].opaque;
+    uint kind = in_hand.density_function;
+    float opaque = in_hand.opaque;
     if (kind == CONSTANT || kind == CLOUDS) {
         return opaque;
     }
     if (kind == HYPERTEXTURE) {
         // Turbulence makes the radius larger only.
         vec3 nearest = max(max(low, -high), 0.0);
-        return opaque * clamp((1.0 - length(nearest)) / volumes[v].hypertexture_softness, 0.0, 1.0);
+        return opaque * clamp((1.0 - length(nearest)) / in_hand.hypertexture_softness, 0.0, 1.0);
     }
     float thickness = 1.0;
     if (kind == FOG) {
-        float front = volumes[v].front_x_m + volumes[v].front_per_frame_m * frame.number
-            + max(volumes[v].front_turbulence_m, 0.0) * MOST_TURBULENCE + max(volumes[v].front_table_m, 0.0);
-        float from = volumes[v].center.x + low.x * volumes[v].half_extent_m.x;
-        thickness = clamp((front - from) / volumes[v].front_depth_m, 0.0, 1.0);
-        thickness *= volumes[v].front_full_frames > 0.0 && frame.number <= 0.0 ? 0.0 : 1.0;
+        float front = in_hand.front_x_m + in_hand.front_per_frame_m * frame.number
+            + max(in_hand.front_turbulence_m, 0.0) * MOST_TURBULENCE + max(in_hand.front_table_m, 0.0);
+        float from = in_hand.center.x + low.x * in_hand.half_extent_m.x;
+        thickness = clamp((front - from) / in_hand.front_depth_m, 0.0, 1.0);
+        thickness *= in_hand.front_full_frames > 0.0 && frame.number <= 0.0 ? 0.0 : 1.0;
     } else if (kind == STEAM) {
         thickness = clamp(0.5 - 0.5 * low.y, 0.0, 1.0);
     }
-    return thickness > 0.0 ? pow(MOST_TURBULENCE * opaque, volumes[v].power) * thickness : 0.0;
+    return thickness > 0.0 ? pow(MOST_TURBULENCE * opaque, in_hand.power) * thickness : 0.0;
 }

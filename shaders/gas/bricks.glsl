@@ -11,8 +11,8 @@ uint brick_at(uint v, ivec3 brick) {
 }
 
 // From metres off the volume's middle to bricks.
-vec3 bricks_a_metre(uint v) {
-    return 0.5 * float(counts.bricks) / volumes[v].half_extent_m;
+vec3 bricks_a_metre() {
+    return 0.5 * float(counts.bricks) / in_hand.half_extent_m;
 }
 
 // The brick of a position that is counted in bricks; outside the box the nearest one.

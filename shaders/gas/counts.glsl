@@ -21,3 +21,10 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint glow; // 1 where files have temperatures
     uint volume_scale; // of every so many columns and rows a pixel's gas is marched before the others' is
 } counts;
+
+// Read once a thread: a processor that does many threads in step reads a storage buffer thread by thread.
+uint octaves = 0u;
+
+void read_counts() {
+    octaves = counts.octaves;
+}

@@ -11,11 +11,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/loops.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-several.glsl"
 #include "gas/density-{DENSITY}.glsl"
 
 layout(set = 0, binding = 29, std430) buffer DensityCache {
-    float density_cache[]; // a table a volume; x runs fastest
+    vec4 density_cache[]; // a table a volume, x runs fastest: an entry, and those after it in x, in y, and in both
 };
 
 layout(push_constant, std430) uniform Table {
@@ -32,12 +32,19 @@ void main() {
     if (entry.x >= n || entry.y >= n || entry.z >= n) {
         return;
     }
-    uint v = table.volume;
+    read_counts();
+    take_volume(table.volume);
     vec3 q = 2.0 * vec3(entry) / float(n - 1u) - 1.0;
-    vec3 point = volumes[v].center + q * volumes[v].half_extent_m;
+    vec3 point = in_hand.center + q * in_hand.half_extent_m;
     float density = 0.0;
-    if (inwardness(v, point) >= -REACH / float(n - 1u) - 1.0e-3) {
-        density = gas_density(v, point);
+    if (inwardness(point) >= -REACH / float(n - 1u) - 1.0e-3) {
+        density = gas_density(point);
     }
-    density_cache[((v * n + entry.z) * n + entry.y) * n + entry.x] = density;
+    // To where four are read at once; of the last ones of an axis the first stand for those after them, which none asks for.
+    uint layer = (table.volume * n + entry.z) * n;
+    uvec2 before = uvec2(entry.x > 0u ? entry.x - 1u : n - 1u, entry.y > 0u ? entry.y - 1u : n - 1u);
+    density_cache[(layer + entry.y) * n + entry.x].x = density;
+    density_cache[(layer + entry.y) * n + before.x].y = density;
+    density_cache[(layer + before.y) * n + entry.x].z = density;
+    density_cache[(layer + before.y) * n + before.x].w = density;
 }

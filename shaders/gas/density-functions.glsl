@@ -17,27 +17,15 @@ const uint FOG = 3u;
 const uint STEAM = 4u;
 const uint HYPERTEXTURE = 5u;
 
-// theta = (frame_num mod SWIRL_FRAMES) SWIRL with SWIRL = 2 pi / SWIRL_FRAMES: the text prints a product for the
-// remainder.
-vec2 swirl(uint v) {
-    float frames = volumes[v].swirl_frames;
-    if (frames <= 0.0) {
-        return vec2(0.0);
-    }
-    float number = frame.number;
-    float theta = 6.2831853 * (number - frames * floor(number / frames)) / frames;
-    return vec2(volumes[v].ellipse.x * cos(theta), volumes[v].ellipse.y * sin(theta));
-}
-
 float interpolated_offset(float at) {
     float low = floor(at);
     uint first = uint(int(low) & int(OFFSET_SIZE - 1u));
     return mix(offsets[first], offsets[(first + 1u) & (OFFSET_SIZE - 1u)], at - low);
 }
 
-// The density function of a gas, wherever its solid ends. Each takes noise or turbulence up to three times, one after
-// the other, at points that follow from what it took before; all share one place in the code where it is taken, or a
-// compiler that inlines makes dozens of copies.
+// The density function of the volume in hand, wherever its solid ends. Each takes noise or turbulence up to three times,
+// one after the other, at points that follow from what it took before; all share one place in the code where it is taken,
+// or a compiler that inlines makes dozens of copies.
 //
 // - clouds: the text's transparency is 1 - pow(sin + 1, power) / 2, which leaves 0..1 for any power but 1; 1 - pow((sin
 //   + 1) / 2, power) is equal to it there.
@@ -47,16 +35,15 @@ float interpolated_offset(float at) {
 // - steam (figure 6): it rises, so that its point in the texture falls, swirls about the vertical, and thins with its
 //   height.
 // - hypertexture (reference 17): a soft sphere whose surface the turbulence moves.
-float gas_density(uint v, vec3 world) {
-    uint kind = volumes[v].density_function;
-    float opaque = volumes[v].opaque;
-    float power = volumes[v].power;
+float gas_density(vec3 world) {
+    uint kind = in_hand.density_function;
+    float opaque = in_hand.opaque;
+    float power = in_hand.power;
     if (kind == CONSTANT) {
         return opaque;
     }
     float number = frame.number;
-    vec3 p = world * volumes[v].texture_scale_per_m + volumes[v].texture_offset;
-    vec2 ellipse = swirl(v);
+    vec3 p = world * in_hand.texture_scale_per_m + in_hand.texture_offset;
     float factor = opaque;
     float thickness = 1.0;
     uint last = kind == CLOUDS ? 2u : (kind == FOG || kind == STEAM ? 1u : 0u);
@@ -71,15 +58,15 @@ float gas_density(uint v, vec3 world) {
         if (kind == CLOUDS) {
             p += i == 0u ? vec3(value, 0.0, 0.0) : vec3(0.0, value, 0.0);
         } else if (kind == FOG) {
-            float front = volumes[v].front_x_m + volumes[v].front_per_frame_m * number
-                + volumes[v].front_turbulence_m * value + volumes[v].front_table_m * interpolated_offset(p.z);
+            float front = in_hand.front_x_m + in_hand.front_per_frame_m * number
+                + in_hand.front_turbulence_m * value + in_hand.front_table_m * interpolated_offset(p.z);
             is_clear = world.x > front;
-            factor *= volumes[v].front_full_frames > 0.0 ? min(number / volumes[v].front_full_frames, 1.0) : 1.0;
+            factor *= in_hand.front_full_frames > 0.0 ? min(number / in_hand.front_full_frames, 1.0) : 1.0;
             p += vec3(2.0 + value, 0.5 + value, -2.0 - value);
-            p += vec3(-number * volumes[v].along_per_frame, ellipse);
-            thickness = clamp((front - world.x) / volumes[v].front_depth_m, 0.0, 1.0);
+            p += vec3(-number * in_hand.along_per_frame, helix);
+            thickness = clamp((front - world.x) / in_hand.front_depth_m, 0.0, 1.0);
         } else {
-            p += vec3(ellipse.x + value, value - number * volumes[v].along_per_frame, ellipse.y + value);
+            p += vec3(helix.x + value, value - number * in_hand.along_per_frame, helix.y + value);
         }
     }
     is_cut = is_cut || (i <= last && !is_clear);
@@ -87,18 +74,18 @@ float gas_density(uint v, vec3 world) {
         return 0.0;
     }
     if (kind == CLOUDS) {
-        return opaque * pow(0.5 * (sin(value * volumes[v].frequency) + 1.0), power);
+        return opaque * pow(0.5 * (sin(value * in_hand.frequency) + 1.0), power);
     }
     if (kind == HYPERTEXTURE) {
-        vec3 q = (world - volumes[v].center) / volumes[v].half_extent_m;
-        float radius = length(q) * (1.0 + volumes[v].hypertexture_amplitude * value);
-        return clamp((1.0 - radius) / volumes[v].hypertexture_softness, 0.0, 1.0) * opaque;
+        vec3 q = (world - in_hand.center) / in_hand.half_extent_m;
+        float radius = length(q) * (1.0 + in_hand.hypertexture_amplitude * value);
+        return clamp((1.0 - radius) / in_hand.hypertexture_softness, 0.0, 1.0) * opaque;
     }
     float density = pow(value * factor, power);
     if (kind == FOG) {
         density *= thickness;
     } else if (kind == STEAM) {
-        float height = (world.y - volumes[v].center.y) / volumes[v].half_extent_m.y * 0.5 + 0.5;
+        float height = (world.y - in_hand.center.y) / in_hand.half_extent_m.y * 0.5 + 0.5;
         density *= clamp(1.0 - height, 0.0, 1.0);
     }
     return density;

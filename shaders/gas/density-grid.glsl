@@ -24,14 +24,14 @@ layout(set = 0, binding = 28, std430) readonly buffer Samples {
 const float BORDER = 0.501;
 
 // In samples from the first one.
-vec3 grid_position(uint v, vec3 world) {
-    vec3 p = world - volumes[v].center;
-    vec3 at = vec3(dot(grids[v].to_column, p), dot(grids[v].to_row, p), dot(grids[v].to_layer, p));
-    return at + grids[v].middle;
+vec3 grid_position(Grid grid, vec3 world) {
+    vec3 p = world - in_hand.center;
+    vec3 at = vec3(dot(grid.to_column, p), dot(grid.to_row, p), dot(grid.to_layer, p));
+    return at + grid.middle;
 }
 
-uvec3 grid_size(uint v) {
-    return uvec3(grids[v].columns, grids[v].rows, grids[v].layers);
+uvec3 grid_size(Grid grid) {
+    return uvec3(grid.columns, grid.rows, grid.layers);
 }
 
 // The nearest sample that there is.
@@ -45,6 +45,6 @@ bool is_in_grid(vec3 at, uvec3 size) {
 }
 
 // Density of an interpolated sample.
-float transferred(uint v, float value) {
-    return pow(clamp(value, 0.0, 1.0) * volumes[v].opaque, volumes[v].power);
+float transferred(float value) {
+    return pow(clamp(value, 0.0, 1.0) * in_hand.opaque, in_hand.power);
 }

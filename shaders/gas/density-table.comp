@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/loops.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-several.glsl"
 #include "gas/density-{DENSITY}.glsl"
 #include "gas/volume-density.glsl"
 
@@ -28,8 +28,10 @@ void main() {
     if (entry.x >= n || entry.y >= n || entry.z >= n) {
         return;
     }
+    read_counts();
+    take_volume(table.volume);
     vec3 q = 2.0 * vec3(entry) / float(n - 1u) - 1.0;
-    vec3 point = volumes[table.volume].center + q * volumes[table.volume].half_extent_m;
+    vec3 point = in_hand.center + q * in_hand.half_extent_m;
     uint at = ((table.volume * n + entry.z) * n + entry.y) * n + entry.x;
-    density_tables[at] = volume_density(table.volume, point);
+    density_tables[at] = volume_density(point);
 }

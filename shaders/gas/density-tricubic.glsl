@@ -20,9 +20,10 @@ float cubic_layer(uint layer, uvec4 rows, vec4 row_weights, uvec4 columns, vec4 
     return dot(values, row_weights);
 }
 
-float gas_density(uint v, vec3 world) {
-    vec3 at = grid_position(v, world);
-    uvec3 size = grid_size(v);
+float gas_density(vec3 world) {
+    Grid grid = grids[index_in_hand];
+    vec3 at = grid_position(grid, world);
+    uvec3 size = grid_size(grid);
     if (!is_in_grid(at, size)) {
         return 0.0;
     }
@@ -34,12 +35,12 @@ float gas_density(uint v, vec3 world) {
     uvec3 d = nearest_sample(ivec3(low) + 2, size);
     uvec4 columns = uvec4(a.x, b.x, c.x, d.x);
     uvec4 rows = uvec4(a.y, b.y, c.y, d.y) * size.x;
-    uvec4 layers = uvec4(a.z, b.z, c.z, d.z) * (size.x * size.y) + grids[v].first;
+    uvec4 layers = uvec4(a.z, b.z, c.z, d.z) * (size.x * size.y) + grid.first;
     vec4 column_weights = cubic_weights(t.x);
     vec4 row_weights = cubic_weights(t.y);
     vec4 values = vec4(cubic_layer(layers.x, rows, row_weights, columns, column_weights),
         cubic_layer(layers.y, rows, row_weights, columns, column_weights),
         cubic_layer(layers.z, rows, row_weights, columns, column_weights),
         cubic_layer(layers.w, rows, row_weights, columns, column_weights));
-    return transferred(v, dot(values, cubic_weights(t.z)));
+    return transferred(dot(values, cubic_weights(t.z)));
 }

@@ -1,5 +1,5 @@
 // Density is asked for everywhere.
 
-float empty_m(uint v, vec3 point, vec3 direction) {
+float empty_m(vec3 point, vec3 direction) {
     return 0.0;
 }

@@ -2,11 +2,11 @@
 
 #include "gas/bricks.glsl"
 
-float empty_m(uint v, vec3 point, vec3 direction) {
-    vec3 scale = bricks_a_metre(v);
-    vec3 at = (point - volumes[v].center) * scale + 0.5 * float(counts.bricks);
+float empty_m(vec3 point, vec3 direction) {
+    vec3 scale = bricks_a_metre();
+    vec3 at = (point - in_hand.center) * scale + 0.5 * float(counts.bricks);
     ivec3 brick = brick_of(at);
-    if (brick_bounds[brick_at(v, brick)] > 0.0) {
+    if (brick_bounds[brick_at(index_in_hand, brick)] > 0.0) {
         return 0.0;
     }
     made++;

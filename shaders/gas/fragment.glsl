@@ -67,28 +67,12 @@ vec2 segment_inside(vec2 from, vec2 to) {
     return segment;
 }
 
-// Mean of 1 in even and -1 in odd intervals of length 1, over a width around a place.
-float mean_side(float place, float width) {
-    float side = mod(floor(place), 2.0) < 0.5 ? 1.0 : -1.0;
-    // Its integral goes up and down between 0 and 1.
-    float low = 1.0 - abs(mod(place - 0.5 * width, 2.0) - 1.0);
-    float high = 1.0 - abs(mod(place + 0.5 * width, 2.0) - 1.0);
-    return width < 1.0e-3 ? side : clamp((high - low) / width, -1.0, 1.0);
-}
-
 // Depth under a place of the picture: where its ray meets the triangle's plane, but no nearer or farther than its
 // corners.
 float depth_at(Facet facet, vec2 pixel) {
     float slope = dot(facet.facing, ray_direction(pixel));
     float depth = abs(slope) > 1.0e-12 ? facet.height / slope : facet.range.x;
     return clamp(depth, facet.range.x, facet.range.y);
-}
-
-// Where the ray of a place of the picture meets the triangle's plane, from the eye.
-vec3 in_plane(Facet facet, vec2 pixel) {
-    vec3 ray = ray_direction(pixel);
-    float slope = dot(facet.facing, ray);
-    return abs(slope) > 1.0e-12 ? ray * (facet.height / slope) : ray * frame.yon_m;
 }
 
 // The piece of a triangle that is inside a pixel.
@@ -161,15 +145,7 @@ void add_edge(inout Piece piece, Facet facet, vec2 origin, vec2 a, vec2 b) {
 
 const Piece WHOLE = Piece(vec4(1.0), FULL, false, 0.0, vec2(0.0), 0.0, vec2(1.0e30, 0.0));
 
-// Nearest and farthest depth of a triangle that fills the pixel.
-vec2 depths_of_full(Facet facet, vec2 origin) {
-    Piece piece = WHOLE;
-    add_corner(piece, facet, origin, vec2(0.0, 0.0));
-    add_corner(piece, facet, origin, vec2(1.0, 0.0));
-    add_corner(piece, facet, origin, vec2(0.0, 1.0));
-    add_corner(piece, facet, origin, vec2(1.0, 1.0));
-    return piece.depths;
-}
+#include "gas/opacity-{OPACITY}.glsl"
 
 struct Fragment {
     bool is_there;
@@ -193,31 +169,7 @@ Fragment shaded(Facet facet, vec2 at, float depth, uint mask, float coverage, ve
     }
 
     vec3 color = objects[facet.object].color;
-    float edge_m = objects[facet.object].checker_edge_m;
-    if (edge_m > 0.0) {
-        // Half a square up, so that boards that lie on a border of squares have one colour.
-        vec3 at_square = point / edge_m + vec3(0.0, 0.5, 0.0);
-        vec3 across = in_plane(facet, at + vec2(0.5, 0.0)) - in_plane(facet, at - vec2(0.5, 0.0));
-        vec3 along = in_plane(facet, at + vec2(0.0, 0.5)) - in_plane(facet, at - vec2(0.0, 0.5));
-        vec3 width = min((abs(across) + abs(along)) / edge_m, vec3(1.0e3));
-        vec3 sides = vec3(mean_side(at_square.x, width.x), mean_side(at_square.y, width.y),
-            mean_side(at_square.z, width.z));
-        color = mix(objects[facet.object].checker_color, color, 0.5 + 0.5 * sides.x * sides.y * sides.z);
-    }
-    float opacity = objects[facet.object].opacity;
-    int texture_index = objects[facet.object].solid_texture;
-    if (texture_index >= 0) {
-        // Surface-defined gases: the solid texture is the surface's transparency.
-        opacity *= clamp(gas_density(uint(texture_index), point + objects[facet.object].offset_m), 0.0, 1.0);
-        vec2 ends_m = objects[facet.object].ends_m;
-        float fade_m = objects[facet.object].fade_m;
-        if (ends_m.x > 0.0) {
-            vec2 t = clamp((ends_m - abs(point.xz)) / max(fade_m, 1.0e-3), 0.0, 1.0);
-            opacity *= t.x * t.x * (3.0 - 2.0 * t.x) * t.y * t.y * (3.0 - 2.0 * t.y);
-        }
-        // What fades before the opaque surface behind it must not be one.
-        opacity = fade_m > 0.0 ? min(opacity, 0.9999) : opacity;
-    }
+    float opacity = gas_opacity(facet, at, depth, normal, objects[facet.object].opacity);
     uint covered = mask;
     if (mask == 0u) {
         // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants OPACITY=plain,gas
+
 // The nearest fragments of each pixel alone (a k-buffer): those that the triangles of its tile leave, each put into its
 // place among those that are kept. What is behind the last place is lost. Pixels are counted where that may show: where
 // the opaque fragments before the last place, behind each of which the next one is kept, do not cover all sub-pixels.
@@ -23,6 +25,7 @@ bool is_before(Link link, Surface surface, uint slot) {
 }
 
 void main() {
+    read_counts();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     uint lane = gl_LocalInvocationID.y * TILE + gl_LocalInvocationID.x;
     bool is_mine = is_in_band(pixel);
@@ -55,7 +58,7 @@ void main() {
                 chunk++;
             }
             if (bits != 0u) {
-                uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))];
+                uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))].xy;
                 bits &= bits - 1u;
                 // However its depth was rounded; and anything until the first loss is known.
                 bool may_count = !has_lost || uintBitsToFloat(next.y) <= last_m * (1.0 + 1.0e-6);

@@ -1,8 +1,10 @@
 #version 450
 
+#pragma variants OPACITY=plain,gas
+
 // What the triangles of each tile leave in its pixels, a thread a pixel that goes through those that touch it. Behind
-// the nearest one that is opaque and fills the pixel only the next fragment is kept: a fraction of it may show where
-// depths overlap. So the lists are those of `linked` up to there. Each thread adds to its own list; slots are taken for
+// the farthest corner of one that is opaque and fills the pixel only the next fragment is kept: a fraction of it may show
+// where depths overlap. So the lists are those of `linked` up to there. Each thread adds to its own list; slots are taken for
 // all of a tile at once.
 
 #include "gas/tile-pixels.glsl"
@@ -12,6 +14,7 @@ shared uint wanted_of_row[8];
 shared uint first_of_tile;
 
 void main() {
+    read_counts();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     uint lane = gl_LocalInvocationID.y * TILE + gl_LocalInvocationID.x;
     bool is_mine = is_in_band(pixel);
@@ -22,7 +25,7 @@ void main() {
     uint from = chunks.from;
     uint to = chunks.to;
 
-    // The nearest full cover.
+    // A depth at which the pixel is covered: of the triangles that fill it the least that one lies before as a whole.
     float cover_m = 1.0e30;
     uint touching = 0u;
     uint chunk = from;
@@ -37,12 +40,12 @@ void main() {
         if (bits != 0u) {
             uint at = (chunk - 1u) * CHUNK + uint(findLSB(bits));
             bits &= bits - 1u;
-            vec2 depths = depths_of_full(facet_of(tile_triangles[at].x), origin);
-            cover_m = depths.x <= frame.yon_m ? min(cover_m, 0.5 * (depths.x + depths.y)) : cover_m;
+            float farthest_m = uintBitsToFloat(tile_triangles[at].z);
+            cover_m = farthest_m <= frame.yon_m ? min(cover_m, farthest_m) : cover_m;
         }
     }
     bool is_ended_here = bits != 0u || chunk < to;
-    // What is farther is behind it, however its depth was rounded.
+    // What is farther is behind a cover, however its depth was rounded.
     float bound_m = cover_m * (1.0 + 1.0e-6);
 
     // The slots that are wanted: of all that may be nearer, and one more.
@@ -107,7 +110,7 @@ void main() {
                 chunk++;
             }
             if (bits != 0u) {
-                uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))];
+                uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))].xy;
                 bits &= bits - 1u;
                 float nearest_m = uintBitsToFloat(next.y);
                 triangle = nearest_m <= bound_m || nearest_m <= behind_m ? next.x : NONE;

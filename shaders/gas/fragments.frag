@@ -1,12 +1,12 @@
 #version 450
 
+#pragma variants OPACITY=plain,gas
+
 // What the triangles leave in the pixels of their boxes, appended to the pixels' lists.
 
 #include "gas/counts.glsl"
 #include "gas/footprint.glsl"
 #include "gas/loops.glsl"
-#include "gas/volume.glsl"
-#include "gas/density-functions.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 #include "gas/fragment.glsl"
@@ -32,6 +32,7 @@ layout(location = 1) flat in vec4 corners_cd;
 layout(location = 2) flat in uint seen_triangle;
 
 void main() {
+    read_counts();
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     Fragment fragment = fragment_of(facet_of(seen_triangle), corners_ab, corners_cd, vec2(pixel));
     if (!fragment.is_there) {

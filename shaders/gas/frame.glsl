@@ -23,7 +23,6 @@ layout(set = 0, binding = 0, std140) uniform Frame {
 } frame;
 
 const uint NONE = 0xffffffffu; // the end of a list
-const uint MAX_VOLUMES = 8u;
 const uint MAX_LIGHTS = 4u;
 
 vec3 ray_direction(vec2 pixel) {

@@ -11,10 +11,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/loops.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-several.glsl"
 #include "gas/density-{DENSITY}.glsl"
 #include "gas/volume-density.glsl"
-#include "gas/light.glsl"
+#include "gas/lights-several.glsl"
 #include "gas/shadow-table.glsl"
 #include "gas/scattering.glsl"
 #include "gas/froxels.glsl"
@@ -33,6 +33,9 @@ void main() {
     if (froxel.x >= counts.froxel_columns || froxel.y >= counts.froxel_rows || froxel.z >= counts.froxel_slices) {
         return;
     }
+    read_counts();
+    read_volumes();
+    read_lights();
     vec3 ray = column_ray(froxel.xy);
     vec3 direction = normalize(ray);
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -51,22 +54,24 @@ void main() {
         float densest = 0.0;
         float apart = 1.0e30; // of the densities by which a solid's normal is found
         uint v = 0u;
-        for (; v < counts.volumes; v++) {
-            densities[v] = volume_density(v, point);
+        for (; v < volume_count; v++) {
+            take_volume(v);
+            densities[v] = volume_density(point);
             densest = max(densest, densities[v]);
-            extinction += volumes[v].tau_per_m * densities[v];
-            apart = densities[v] > 0.0 ? min(apart, 0.25 * volumes[v].step_m) : apart;
+            extinction += in_hand.tau_per_m * densities[v];
+            apart = densities[v] > 0.0 ? min(apart, 0.25 * in_hand.step_m) : apart;
         }
-        is_cut = is_cut || v < counts.volumes;
-        for (v = 0u; v < counts.volumes; v++) {
-            if (densities[v] > 0.0 && volumes[v].is_solid != 0u) {
-                float offset_m = 0.25 * volumes[v].step_m;
-                previous[v] = volume_density(v, point - direction * apart);
-                asides[v] = volume_density(v, point + frames.side * offset_m);
-                aboves[v] = volume_density(v, point + frames.up * offset_m);
+        is_cut = is_cut || v < volume_count;
+        for (v = 0u; v < volume_count; v++) {
+            take_volume(v);
+            if (densities[v] > 0.0 && in_hand.is_solid != 0u) {
+                float offset_m = 0.25 * in_hand.step_m;
+                previous[v] = volume_density(point - direction * apart);
+                asides[v] = volume_density(point + frames.side * offset_m);
+                aboves[v] = volume_density(point + frames.up * offset_m);
             }
         }
-        is_cut = is_cut || v < counts.volumes;
+        is_cut = is_cut || v < volume_count;
         if (extinction > 0.0) {
             vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
             sum += vec4(emission, extinction);

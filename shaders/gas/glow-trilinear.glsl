@@ -5,17 +5,18 @@ layout(set = 0, binding = 35, std430) readonly buffer Glow {
     vec4 glow[]; // as grid_samples, where there are temperatures; linear RGB
 };
 
-vec3 glow_at(uint v, vec3 world) {
+vec3 glow_at(vec3 world) {
     if (counts.glow == 0u) {
         return vec3(0.0);
     }
-    vec3 at = grid_position(v, world);
-    uvec3 size = grid_size(v);
+    Grid grid = grids[index_in_hand];
+    vec3 at = grid_position(grid, world);
+    uvec3 size = grid_size(grid);
     vec3 low = floor(at);
     vec3 t = at - low;
     uvec3 a = nearest_sample(ivec3(low), size);
     uvec3 b = nearest_sample(ivec3(low) + 1, size);
-    uint first = grids[v].first;
+    uint first = grid.first;
     uint rows00 = first + (a.z * size.y + a.y) * size.x;
     uint rows10 = first + (a.z * size.y + b.y) * size.x;
     uint rows01 = first + (b.z * size.y + a.y) * size.x;

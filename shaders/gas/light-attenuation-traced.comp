@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants DENSITY=functions,trilinear,tricubic,cached EMPTY=kept,skipped
+#pragma variants DENSITY=functions,trilinear,tricubic,cached EMPTY=kept,skipped COUNT=one,several
 
 // What the gas takes of the light that falls on surfaces, traced from their points.
 
@@ -8,11 +8,11 @@
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-{COUNT}.glsl"
 #include "gas/density-{DENSITY}.glsl"
 #include "gas/volume-density.glsl"
 #include "gas/empty-{EMPTY}.glsl"
-#include "gas/light.glsl"
+#include "gas/lights-{COUNT}.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-traced.glsl"
 #include "gas/surface-sums.glsl"

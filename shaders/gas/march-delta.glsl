@@ -7,6 +7,12 @@
 
 #include "gas/random.glsl"
 
+void read_scene() {
+    read_counts();
+    read_volumes();
+    read_lights();
+}
+
 // Only what nothing shines through ends a pixel: an end at a small transparency would be a bias.
 bool ends_at(float transparency) {
     return transparency <= 0.0;
@@ -23,12 +29,13 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     float length_m = (extent.y - extent.x) * scale;
     bool is_in[MAX_VOLUMES];
     float apart = 1.0e30; // of the densities by which a solid's normal is found
-    uint volume = 0u;
-    for (; volume < counts.volumes; volume++) {
-        is_in[volume] = segments[volume].x <= middle && middle <= segments[volume].y;
-        apart = is_in[volume] ? min(apart, 0.25 * volumes[volume].step_m) : apart;
+    uint v = 0u;
+    for (; v < volume_count; v++) {
+        take_volume(v);
+        is_in[v] = segments[v].x <= middle && middle <= segments[v].y;
+        apart = is_in[v] ? min(apart, 0.25 * in_hand.step_m) : apart;
     }
-    is_cut = is_cut || volume < counts.volumes;
+    is_cut = is_cut || v < volume_count;
     Gas gas = begun;
     gas.evaluations = 0u;
     while (!gas.is_done && !is_cut && made < MOST_MADE) {
@@ -38,16 +45,16 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         float transparency = 1.0;
         uint evaluations = 0u;
         bool is_over = false;
-        uint v = 0u;
         while (!is_over && !is_cut) {
             vec3 point = entry + direction * at_m;
             Flight flight = Flight(0.0, length_m - at_m);
-            for (v = 0u; v < counts.volumes; v++) {
+            for (v = 0u; v < volume_count; v++) {
                 if (is_in[v]) {
-                    flight = through(flight, v, point, direction);
+                    take_volume(v);
+                    flight = through(flight, point, direction);
                 }
             }
-            is_cut = is_cut || v < counts.volumes;
+            is_cut = is_cut || v < volume_count;
             float free_m = free_way(flight);
             at_m += min(free_m, flight.clear_m);
             is_over = free_m >= flight.clear_m && at_m >= length_m;
@@ -59,27 +66,29 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                 float aboves[MAX_VOLUMES];
                 float extinction = 0.0;
                 float densest = 0.0;
-                for (v = 0u; v < counts.volumes; v++) {
+                for (v = 0u; v < volume_count; v++) {
                     densities[v] = 0.0;
                     if (is_in[v]) {
-                        densities[v] = volume_density(v, point);
+                        take_volume(v);
+                        densities[v] = volume_density(point);
                         evaluations++;
                         densest = max(densest, densities[v]);
-                        extinction += volumes[v].tau_per_m * densities[v];
+                        extinction += in_hand.tau_per_m * densities[v];
                     }
                 }
-                is_cut = is_cut || v < counts.volumes;
+                is_cut = is_cut || v < volume_count;
                 if (drawn() * flight.bound < extinction) {
-                    for (v = 0u; v < counts.volumes; v++) {
-                        if (densities[v] > 0.0 && volumes[v].is_solid != 0u) {
-                            float offset_m = 0.25 * volumes[v].step_m;
-                            previous[v] = volume_density(v, point - direction * apart);
-                            asides[v] = volume_density(v, point + frames.side * offset_m);
-                            aboves[v] = volume_density(v, point + frames.up * offset_m);
+                    for (v = 0u; v < volume_count; v++) {
+                        take_volume(v);
+                        if (densities[v] > 0.0 && in_hand.is_solid != 0u) {
+                            float offset_m = 0.25 * in_hand.step_m;
+                            previous[v] = volume_density(point - direction * apart);
+                            asides[v] = volume_density(point + frames.side * offset_m);
+                            aboves[v] = volume_density(point + frames.up * offset_m);
                             evaluations += 3u;
                         }
                     }
-                    is_cut = is_cut || v < counts.volumes;
+                    is_cut = is_cut || v < volume_count;
                     vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
                     color = emission / extinction;
                     transparency = 0.0;

@@ -7,6 +7,11 @@
 
 layout(set = 0, binding = 34) uniform texture3D froxel_sums;
 
+void read_scene() {
+    read_counts();
+    read_volumes();
+}
+
 // A depth: the slice that it lies in, and the part of the slice before it.
 struct Place {
     uint slice;

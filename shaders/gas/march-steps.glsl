@@ -37,6 +37,12 @@ float place_in_part(uint pixel_index, uint number) {
     return float(h >> 8u) / 16777216.0;
 }
 
+void read_scene() {
+    read_counts();
+    read_volumes();
+    read_lights();
+}
+
 // Of all that is before it, the transparency at which a pixel's tracing ends.
 bool ends_at(float transparency) {
     return transparency < frame.early_end;
@@ -55,16 +61,17 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     bool is_in[MAX_VOLUMES];
     float previous[MAX_VOLUMES]; // densities, for the normals of solids
     bool has_solid = false;
-    uint volume = 0u;
-    for (; volume < counts.volumes; volume++) {
-        previous[volume] = 0.0;
-        is_in[volume] = segments[volume].x <= middle && middle <= segments[volume].y;
-        if (is_in[volume]) {
-            step_m = min(step_m, volumes[volume].step_m);
-            has_solid = has_solid || volumes[volume].is_solid != 0u;
+    uint v = 0u;
+    for (; v < volume_count; v++) {
+        previous[v] = 0.0;
+        is_in[v] = segments[v].x <= middle && middle <= segments[v].y;
+        if (is_in[v]) {
+            take_volume(v);
+            step_m = min(step_m, in_hand.step_m);
+            has_solid = has_solid || in_hand.is_solid != 0u;
         }
     }
-    is_cut = is_cut || volume < counts.volumes;
+    is_cut = is_cut || v < volume_count;
     step_m /= float(counts.samples);
     float early = has_solid ? max(frame.early_end, 1.0 - SOLID_OPACITY) : frame.early_end;
     float length_m = (extent.y - extent.x) * scale;
@@ -89,19 +96,19 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         float densest = 0.0;
         float clear_m = 1.0e30; // along which no volume has density
         uint evaluations = 0u;
-        uint v = 0u;
-        for (; v < counts.volumes; v++) {
+        for (v = 0u; v < volume_count; v++) {
             densities[v] = 0.0;
-            float empty = is_in[v] ? empty_m(v, point, direction) : 1.0e30;
+            take_volume(v);
+            float empty = is_in[v] ? empty_m(point, direction) : 1.0e30;
             clear_m = min(clear_m, empty);
             if (empty <= 0.0) {
                 // At the point, and for a solid in two directions orthogonal to the ray.
-                float apart = 0.25 * volumes[v].step_m;
-                uint count = volumes[v].is_solid != 0u ? 3u : 1u;
+                float apart = 0.25 * in_hand.step_m;
+                uint count = in_hand.is_solid != 0u ? 3u : 1u;
                 uint i = 0u;
                 for (; i < count; i++) {
                     vec3 offset = i == 0u ? vec3(0.0) : (i == 1u ? side : up) * apart;
-                    float density = volume_density(v, point + offset);
+                    float density = volume_density(point + offset);
                     if (i == 0u) {
                         densities[v] = density;
                     } else if (i == 1u) {
@@ -113,20 +120,20 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                 is_cut = is_cut || i < count;
                 evaluations += count;
                 densest = max(densest, densities[v]);
-                extinction += volumes[v].tau_per_m * densities[v];
+                extinction += in_hand.tau_per_m * densities[v];
             }
         }
-        is_cut = is_cut || v < counts.volumes;
+        is_cut = is_cut || v < volume_count;
         vec3 emission = vec3(0.0);
         if (extinction > 0.0 && !is_entry) {
             float since_m = max(at_m - previous_m, 1.0e-3 * step_m);
             Frames frames = Frames(direction, side, up);
             emission = emission_at(point, frames, densest, since_m, densities, previous, asides, aboves);
         }
-        for (v = 0u; v < counts.volumes; v++) {
+        for (v = 0u; v < volume_count; v++) {
             previous[v] = densities[v];
         }
-        is_cut = is_cut || v < counts.volumes;
+        is_cut = is_cut || v < volume_count;
         previous_m = at_m;
         // Nothing is kept of an increment that was not done to its end.
         if (!is_cut && is_entry) {

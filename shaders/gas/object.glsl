@@ -12,4 +12,7 @@ struct Object {
     int solid_texture; // its entry in the volumes, or -1
     float fade_m; // depth before the opaque surface behind it over which a surface-defined gas fades, 0 for none
     vec2 ends_m; // distances in x and z from its origin at which such a gas has faded out, 0 for none
+    float rim; // cosine between normal and ray below which such a gas fades towards its silhouette, 0 for none
+    vec3 vein_color; // where a solid texture is dense, linear RGB
+    int veins; // its entry in the volumes, or -1
 };

@@ -26,16 +26,16 @@ struct Flight {
 // A bound holds for so many bricks beyond its own, see bricks.comp: the way goes on inside the next one.
 const float BEYOND = 5.0e-4;
 
-// The part of a way that one more volume is in.
-Flight through(Flight flight, uint v, vec3 point, vec3 direction) {
-    vec3 scale = bricks_a_metre(v);
-    vec3 at = (point - volumes[v].center) * scale + 0.5 * float(counts.bricks);
+// The part of a way that the volume in hand is in as well.
+Flight through(Flight flight, vec3 point, vec3 direction) {
+    vec3 scale = bricks_a_metre();
+    vec3 at = (point - in_hand.center) * scale + 0.5 * float(counts.bricks);
     ivec3 brick = brick_of(at);
     vec3 along = direction * scale;
     float most = max(abs(along.x), max(abs(along.y), abs(along.z)));
     float clear_m = max(way_through(brick, at, along), 0.0) + BEYOND / most;
     made++;
-    float bound = flight.bound + volumes[v].tau_per_m * brick_bounds[brick_at(v, brick)];
+    float bound = flight.bound + in_hand.tau_per_m * brick_bounds[brick_at(index_in_hand, brick)];
     return Flight(bound, min(flight.clear_m, clear_m));
 }
 

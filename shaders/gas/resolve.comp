@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants VEINS=none,solid
+
 // Section "Combining A-buffer and volume rendering techniques": surface fragments and the gas's sections, sorted into
 // one list, are blended front to back by their masks, as compositing 32 sub-pixels would. Only what is visible is
 // shaded. Where the depth ranges of neighbouring fragments of two objects overlap they intersect: by Carpenter's
@@ -14,7 +16,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/light.glsl"
+#include "gas/lights-several.glsl"
 #include "gas/lists.glsl"
 #include "gas/object.glsl"
 
@@ -66,6 +68,9 @@ float seen_opacity(uint fragment, Link link, float end_m) {
     return opacity_of(color_at(fragment)) * (t * t * (3.0 - 2.0 * t));
 }
 
+#include "gas/checkers.glsl"
+#include "gas/veins-{VEINS}.glsl"
+
 // Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
 vec3 shaded(uint f, vec3 ray) {
     Surface surface = surface_at(f);
@@ -74,23 +79,26 @@ vec3 shaded(uint f, vec3 ray) {
     vec3 direction = normalize(ray);
     vec3 normal = unpack_normal(surface.normal);
     normal = dot(normal, ray) > 0.0 ? -normal : normal;
+    albedo = checkered(surface.object, albedo, point, normal, ray);
+    albedo = veined(surface.object, albedo, point, normal, ray);
     float strength = objects[surface.object].highlight_strength;
     float exponent = objects[surface.object].highlight_exponent;
     vec3 sum = albedo * frame.ambient;
     uint l = 0u;
-    for (; l < counts.lights; l++) {
-        LightRay to_light = ray_to_light(l, point);
+    for (; l < light_count; l++) {
+        take_light(l);
+        LightRay to_light = ray_to_light(point);
         float facing = dot(normal, to_light.direction);
         if (facing > 0.0) {
-            vec3 light = irradiance(l, to_light.distance_m);
+            vec3 light = irradiance(to_light.distance_m);
             if (counts.attenuations != 0u) {
-                light *= 1.0 - attenuations[f * counts.lights + l];
+                light *= 1.0 - attenuations[f * light_count + l];
             }
             float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
             sum += light * (albedo * facing + strength * pow(mirrored, exponent));
         }
     }
-    is_cut = is_cut || l < counts.lights;
+    is_cut = is_cut || l < light_count;
     return sum;
 }
 
@@ -99,6 +107,8 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    read_counts();
+    read_lights();
     uint list = list_of(pixel);
     if (!is_due(RESOLVE, list)) {
         return;

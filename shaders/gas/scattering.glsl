@@ -12,9 +12,9 @@ float scattered(float g, float cosine) {
     return (1.0 - g * g) / (4.0 * PI * under * sqrt(under));
 }
 
-float phase(uint v, float cosine) {
-    vec2 weights = volumes[v].phase_weights;
-    vec2 g = volumes[v].phase_g;
+float phase(float cosine) {
+    vec2 weights = in_hand.phase_weights;
+    vec2 g = in_hand.phase_g;
     return weights.x * scattered(g.x, cosine) + weights.y * scattered(g.y, cosine);
 }
 
@@ -32,16 +32,18 @@ vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float 
     vec3 emission = vec3(0.0);
     uint l = 0u;
     uint v = 0u;
-    for (; l < counts.lights; l++) {
-        LightRay to_light = ray_to_light(l, point);
+    for (; l < light_count; l++) {
+        take_light(l);
+        LightRay to_light = ray_to_light(point);
         // For patchy gas, shadows are not computed where it is thinner than a threshold.
         float passed = densest >= frame.shadow_threshold ? transmittance_to(l, point) : 1.0;
-        vec3 light = irradiance(l, to_light.distance_m) * passed;
-        for (v = 0u; v < counts.volumes; v++) {
+        vec3 light = irradiance(to_light.distance_m) * passed;
+        for (v = 0u; v < volume_count; v++) {
             if (densities[v] > 0.0) {
-                float response = PI * phase(v, dot(to_light.direction, frames.ray));
-                if (volumes[v].is_solid != 0u) {
-                    float apart = 0.25 * volumes[v].step_m;
+                take_volume(v);
+                float response = PI * phase(dot(to_light.direction, frames.ray));
+                if (in_hand.is_solid != 0u) {
+                    float apart = 0.25 * in_hand.step_m;
                     float along = (densities[v] - previous[v]) / since_m;
                     float aside = (asides[v] - densities[v]) / apart;
                     float above = (aboves[v] - densities[v]) / apart;
@@ -49,19 +51,20 @@ vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float 
                     vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -frames.ray;
                     response = max(dot(normal, to_light.direction), 0.0);
                 }
-                emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * response;
+                emission += in_hand.tau_per_m * densities[v] * in_hand.albedo * light * response;
             }
         }
-        is_cut = is_cut || v < counts.volumes;
+        is_cut = is_cut || v < volume_count;
     }
-    is_cut = is_cut || l < counts.lights;
-    for (v = 0u; v < counts.volumes; v++) {
-        emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
+    is_cut = is_cut || l < light_count;
+    for (v = 0u; v < volume_count; v++) {
+        take_volume(v);
+        emission += in_hand.tau_per_m * densities[v] * in_hand.albedo * frame.ambient;
         // Hot gas sends out by the fraction that it absorbs (Kirchhoff).
         if (densities[v] > 0.0) {
-            emission += volumes[v].tau_per_m * densities[v] * (1.0 - volumes[v].albedo) * glow_at(v, point);
+            emission += in_hand.tau_per_m * densities[v] * (1.0 - in_hand.albedo) * glow_at(point);
         }
     }
-    is_cut = is_cut || v < counts.volumes;
+    is_cut = is_cut || v < volume_count;
     return emission;
 }

@@ -9,7 +9,7 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    Link links[];
+    uvec4 links[]; // each a Link
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
@@ -28,7 +28,7 @@ void set_next(uint list, uint node, uint next) {
     } else if (is_section(node)) {
         sections[node & ~SECTION].next = next;
     } else {
-        links[node].next = next;
+        links[node].x = next;
     }
 }
 
@@ -37,6 +37,7 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    read_scene();
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     uint list = list_of(pixel);
     Pixel reserved = pixels[list];
@@ -49,13 +50,14 @@ void main() {
     vec2 segments[MAX_VOLUMES];
     float depth = 1.0e30;
     uint v = 0u;
-    for (; v < counts.volumes; v++) {
-        segments[v] = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+    for (; v < volume_count; v++) {
+        take_volume(v);
+        segments[v] = intersect(volume_segment(frame.eye, ray), vec2(frame.hither_m, end));
         if (segments[v].x < segments[v].y) {
             depth = min(depth, segments[v].x);
         }
     }
-    is_cut = v < counts.volumes;
+    is_cut = v < volume_count;
     uint previous = NONE; // fragment or section, of the list's start
     uint fragment = heads[list];
     uint used = 0u;
@@ -84,19 +86,19 @@ void main() {
         float next = end;
         bool is_found = false;
         while (fragment != NONE && !is_found) {
-            Link link = links[fragment];
-            float cut = mean_depth(link);
+            uvec4 link = links[fragment];
+            float cut = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
             is_found = cut > depth;
             if (is_found) {
                 next = min(next, cut);
             } else {
                 previous = fragment;
-                fragment = link.next;
+                fragment = link.x;
             }
         }
         bool has_gas = false;
         bool has_more = false;
-        for (v = 0u; v < counts.volumes; v++) {
+        for (v = 0u; v < volume_count; v++) {
             if (segments[v].x < segments[v].y && segments[v].y > depth) {
                 has_more = true;
                 if (segments[v].x > depth) {
@@ -107,7 +109,7 @@ void main() {
                 }
             }
         }
-        is_stopped = (fragment != NONE && !is_found) || v < counts.volumes;
+        is_stopped = (fragment != NONE && !is_found) || v < volume_count;
         is_done = !is_stopped && (!has_more || next <= depth);
         if (!is_stopped && !is_done) {
             if (has_gas) {

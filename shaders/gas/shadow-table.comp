@@ -29,6 +29,7 @@ layout(push_constant, std430) uniform Wave {
     int distance; // from the light's cell to this wave's entries
     ivec3 cell; // the light's; -1 or the last entry where it lies outside
     uint first_density; // entry of the volume's densities
+    ivec2 first_column; // of entries that this wave may have
     uint first_sum; // entry of the volume's and light's sums
 } wave;
 
@@ -95,15 +96,9 @@ float sum_to_light(ivec3 entry) {
     return mix(mix(s0, sb, fraction_b), mix(sc, sbc, fraction_b), fraction_c);
 }
 
-void write_entry(ivec3 entry) {
-    if (entry.z >= 0 && entry.z < int(frame.table_size)) {
-        shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
-    }
-}
-
 void main() {
     int n = int(frame.table_size);
-    ivec2 xy = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 xy = ivec2(gl_GlobalInvocationID.xy) + wave.first_column;
     if (xy.x >= n || xy.y >= n) {
         return;
     }
@@ -111,7 +106,16 @@ void main() {
     if (along_z < 0) {
         return;
     }
-    // Of this column two entries have the distance, one on each side of the light's cell.
-    write_entry(ivec3(xy, wave.cell.z - along_z));
-    write_entry(ivec3(xy, wave.cell.z + 1 + along_z));
+    // Of this column two entries have the distance, one on each side of the light's cell, or one where it lies outside.
+    int before = wave.cell.z - along_z;
+    int behind = wave.cell.z + 1 + along_z;
+    bool has_behind = behind < n;
+    int z = before >= 0 ? before : behind;
+    bool is_left = before >= 0 || has_behind;
+    while (is_left) {
+        ivec3 entry = ivec3(xy, z);
+        shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
+        is_left = has_behind && z != behind;
+        z = behind;
+    }
 }

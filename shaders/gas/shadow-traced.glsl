@@ -2,17 +2,18 @@
 // volume's step, the last one scaled. Sampled in their middles: the jitter of the viewer's ray makes one value noisy,
 // here it would make all of them so. Bricks without density are left at once (empty-*.glsl).
 
-float optical_depth_to(uint l, vec3 point) {
-    LightRay to_light = ray_to_light(l, point);
+float optical_depth_to_light(vec3 point) {
+    LightRay to_light = ray_to_light(point);
     float sum = 0.0;
     uint v = 0u;
-    for (; v < counts.volumes; v++) {
-        vec2 segment = intersect(volume_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
+    for (; v < volume_count; v++) {
+        take_volume(v);
+        vec2 segment = intersect(volume_segment(point, to_light.direction), vec2(0.0, to_light.distance_m));
         float length_m = segment.y - segment.x;
         if (length_m <= 0.0) {
             continue;
         }
-        float step_m = volumes[v].step_m;
+        float step_m = in_hand.step_m;
         float in_volume = 0.0;
         uint count = uint(ceil(length_m / step_m));
         uint i = 0u;
@@ -20,22 +21,23 @@ float optical_depth_to(uint l, vec3 point) {
             float from = float(i) * step_m;
             float increment = clamp(length_m - from, 0.0, step_m);
             vec3 center = point + to_light.direction * (segment.x + from + 0.5 * increment);
-            float clear_m = empty_m(v, center, to_light.direction);
+            float clear_m = empty_m(center, to_light.direction);
             if (clear_m > 0.0) {
                 // On to the increment that the brick ends in.
                 float end_m = min(from + 0.5 * increment + clear_m, length_m);
                 i = max(i + 1u, min(uint(end_m / step_m), count)) - 1u;
             } else {
-                in_volume += volume_density(v, center) * increment;
+                in_volume += volume_density(center) * increment;
             }
         }
         is_cut = is_cut || i < count;
-        sum += volumes[v].tau_per_m * in_volume;
+        sum += in_hand.tau_per_m * in_volume;
     }
-    is_cut = is_cut || v < counts.volumes;
+    is_cut = is_cut || v < volume_count;
     return sum;
 }
 
+// Of the light in hand.
 float transmittance_to(uint l, vec3 point) {
-    return exp(-optical_depth_to(l, point));
+    return exp(-optical_depth_to_light(point));
 }

@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-several.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 
@@ -19,32 +19,33 @@ layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
 };
 
+// Read and written as vectors: each member that is read by itself costs as much as all of them.
 layout(set = 0, binding = 8, std430) buffer Links {
-    Link links[];
+    uvec4 links[]; // each a Link
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    Surface surfaces[];
+    uvec4 surfaces[]; // each a Surface
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    Color colors[];
+    uvec2 colors[]; // each a Color
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
     Pixel pixels[];
 };
 
+float depth_of(uint fragment) {
+    vec2 depths = uintBitsToFloat(links[fragment].zw);
+    return 0.5 * (depths.x + depths.y);
+}
+
+// Triangles are numbered object by object.
 bool stands_before(uint a, uint b) {
-    float depth_a = mean_depth(links[a]);
-    float depth_b = mean_depth(links[b]);
-    if (depth_a != depth_b) {
-        return depth_a < depth_b;
-    }
-    Surface surface_a = surfaces[a];
-    Surface surface_b = surfaces[b];
-    return surface_a.object != surface_b.object ? surface_a.object < surface_b.object
-        : surface_a.triangle < surface_b.triangle;
+    float depth_a = depth_of(a);
+    float depth_b = depth_of(b);
+    return depth_a < depth_b || (depth_a == depth_b && surfaces[a].z < surfaces[b].z);
 }
 
 // A merge sort on its way: runs of `run` links are merged two by two, what is merged hangs on `head`.
@@ -68,7 +69,7 @@ bool is_sorted(inout Merge m) {
         while (m.p != NONE && !is_stopped) {
             while (!m.is_parted && m.p_left < m.run && m.q != NONE) {
                 m.p_left++;
-                m.q = links[m.q].next;
+                m.q = links[m.q].x;
             }
             bool is_parted = m.is_parted || m.p_left == m.run || m.q == NONE;
             if (is_parted && !m.is_parted) {
@@ -83,16 +84,16 @@ bool is_sorted(inout Merge m) {
                 }
                 uint taken = take_p ? m.p : m.q;
                 if (take_p) {
-                    m.p = links[m.p].next;
+                    m.p = links[m.p].x;
                     m.p_left--;
                 } else {
-                    m.q = links[m.q].next;
+                    m.q = links[m.q].x;
                     m.q_left--;
                 }
                 if (m.tail == NONE) {
                     m.head = taken;
                 } else {
-                    links[m.tail].next = taken;
+                    links[m.tail].x = taken;
                 }
                 m.tail = taken;
             }
@@ -107,7 +108,7 @@ bool is_sorted(inout Merge m) {
         }
         if (m.p == NONE && !m.is_parted) {
             if (m.tail != NONE) {
-                links[m.tail].next = NONE;
+                links[m.tail].x = NONE;
             }
             is_done = m.merges <= 1u;
             if (!is_done) {
@@ -127,6 +128,7 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    read_volumes();
     uint at = list_of(pixel);
     if (!is_due(SORT, at)) {
         return;
@@ -161,14 +163,14 @@ void main() {
         }
     }
     if (phase == COVERING) {
-        for (; f != NONE && covered != 0xffffffffu; f = links[f].next) {
-            if (opacity_of(colors[f]) >= 1.0) {
-                covered |= links[f].mask;
-                if (covered == 0xffffffffu) {
-                    end = min(end, mean_depth(links[f]));
-                }
-            }
+        uint last = f;
+        while (f != NONE && covered != 0xffffffffu) {
+            uvec2 link = links[f].xy;
+            covered |= opacity_of(Color(0u, colors[f].y)) >= 1.0 ? link.y : 0u;
+            last = f;
+            f = link.x;
         }
+        end = covered == 0xffffffffu && last != NONE ? min(end, depth_of(last)) : end;
     }
 
     bool is_done = false;
@@ -177,24 +179,25 @@ void main() {
         vec2 extent = vec2(1.0e30, 0.0);
         uint ends = 0u;
         uint v = 0u;
-        for (; v < counts.volumes; v++) {
-            vec2 segment = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+        for (; v < volume_count; v++) {
+            take_volume(v);
+            vec2 segment = intersect(volume_segment(frame.eye, ray), vec2(frame.hither_m, end));
             if (segment.x < segment.y) {
                 extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
                 ends += 2u;
             }
         }
-        if (v == counts.volumes) {
+        if (v == volume_count) {
             if (phase == COVERING) {
                 phase = COUNTING;
                 f = ends > 0u ? head : NONE;
                 cuts = ends;
             }
-            for (; f != NONE; f = links[f].next) {
-                float depth = mean_depth(links[f]);
-                if (depth > extent.x && depth < extent.y) {
-                    cuts++;
-                }
+            while (f != NONE) {
+                uvec4 link = links[f];
+                float depth = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
+                cuts += uint(depth > extent.x && depth < extent.y);
+                f = link.x;
             }
             is_done = f == NONE;
         }

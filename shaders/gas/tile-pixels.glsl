@@ -5,15 +5,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/footprint.glsl"
 #include "gas/tiles.glsl"
-#include "gas/volume.glsl"
 #include "gas/loops.glsl"
-#include "gas/density-functions.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 #include "gas/fragment.glsl"
 
 layout(set = 0, binding = 23, std430) buffer TileTriangles {
-    uvec2 tile_triangles[]; // of each its number in the piece, and the depth of its nearest corner
+    uvec4 tile_triangles[]; // of each its number in the piece, and the depths of its nearest and its farthest corner
 };
 
 layout(set = 0, binding = 7, std430) buffer Heads {
@@ -35,8 +33,6 @@ layout(set = 0, binding = 10, std430) buffer Colors {
 layout(set = 0, binding = 25, std430) readonly buffer TilePixels {
     uvec2 tile_pixels[];
 };
-
-const uint CHUNKS_A_CALL = 32u; // so that no driver ends the loops, see loops.glsl
 
 struct Chunks {
     uint from;

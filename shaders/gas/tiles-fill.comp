@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #include "gas/facet.glsl"
 
 layout(set = 0, binding = 23, std430) buffer TileTriangles {
-    uvec2 tile_triangles[]; // of each its number in the piece, and the depth of its nearest corner
+    uvec4 tile_triangles[]; // of each its number in the piece, and the depths of its nearest and its farthest corner
 };
 
 layout(set = 0, binding = 24, std430) buffer ChunkTiles {
@@ -29,7 +29,7 @@ void main() {
     TileRange range = tile_range(seen);
     Edges edges = edges_in(range, seen);
     uint count = range.size.x * range.size.y;
-    float nearest_m = facet_of(triangle).range.x;
+    vec2 depths = facet_of(triangle).range;
     uint at = 0u;
     for (; at < count; at++) {
         if (touches(edges, place_of(range, at), float(TILE))) {
@@ -37,7 +37,7 @@ void main() {
             uint slot = tiles[2u * tile + 1u] * CHUNK + atomicAdd(tiles[2u * tile], 1u);
             // Another rounding than that of the count could at most leave a triangle out.
             if (slot < min(counts.chunks, tiles[2u * tile + 3u]) * CHUNK) {
-                tile_triangles[slot] = uvec2(triangle, floatBitsToUint(nearest_m));
+                tile_triangles[slot] = uvec4(triangle, floatBitsToUint(depths.x), floatBitsToUint(depths.y), 0u);
                 if (slot % CHUNK == 0u) {
                     chunk_tiles[slot / CHUNK] = tile;
                 }

@@ -11,7 +11,7 @@ layout(local_size_x = 32) in;
 #include "gas/counters.glsl"
 
 layout(set = 0, binding = 23, std430) buffer TileTriangles {
-    uvec2 tile_triangles[]; // of each its number in the piece, and the depth of its nearest corner
+    uvec4 tile_triangles[]; // of each its number in the piece, and the depths of its nearest and its farthest corner
 };
 
 layout(set = 0, binding = 24, std430) readonly buffer ChunkTiles {

@@ -8,7 +8,7 @@
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-several.glsl"
 #include "gas/lists.glsl"
 #include "gas/march-froxels.glsl"
 #include "gas/sections.glsl"

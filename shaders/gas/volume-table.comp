@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants DENSITY=functions,trilinear,tricubic,cached EMPTY=kept,skipped
+#pragma variants DENSITY=functions,trilinear,tricubic,cached EMPTY=kept,skipped COUNT=one,several
 
 // The gas of each pixel, shadows from the table.
 
@@ -8,11 +8,11 @@
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/volume.glsl"
+#include "gas/volumes-{COUNT}.glsl"
 #include "gas/density-{DENSITY}.glsl"
 #include "gas/volume-density.glsl"
 #include "gas/empty-{EMPTY}.glsl"
-#include "gas/light.glsl"
+#include "gas/lights-{COUNT}.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-table.glsl"
 #include "gas/scattering.glsl"

@@ -129,7 +129,10 @@ host_block! {
         solid_texture: i32,
         fade_m: f32,
         ends_m: [f32; 2],
-        _pad: [f32; 2],
+        rim: f32,
+        _pad: f32,
+        vein_color: [f32; 3],
+        veins: i32,
     }
 }
 
@@ -406,8 +409,10 @@ impl From<&Light> for LightBlock {
 }
 
 impl ObjectBlock {
-    /// At scene frame `number`; `solid_texture` is its entry in the list of volumes.
-    pub fn new(object: &Object, number: u32, solid_texture: Option<usize>) -> Self {
+    /// At scene frame `number`; its solid textures are the next ones in the list of volumes.
+    pub fn new(object: &Object, number: u32, textures: &mut impl Iterator<Item = usize>) -> Self {
+        let mut entry = |is_there: bool| is_there.then(|| textures.next()).flatten().map_or(-1, |entry| entry as i32);
+        let [solid_texture, veins] = [object.gas.is_some(), object.veins.is_some()].map(&mut entry);
         let (checker_color, checker_edge_m) = object.checker.map_or((Vec3::ZERO, 0.0), |c| (c.color, c.edge_m));
         ObjectBlock {
             color: object.color.to_array(),
@@ -418,10 +423,13 @@ impl ObjectBlock {
             highlight_strength: object.highlight.strength,
             highlight_exponent: object.highlight.exponent,
             is_two_sided: object.is_two_sided.into(),
-            solid_texture: solid_texture.map_or(-1, |entry| entry as i32),
+            solid_texture,
             fade_m: object.fade_m,
             ends_m: object.ends_m.to_array(),
-            _pad: [0.0; 2],
+            rim: object.rim,
+            _pad: 0.0,
+            vein_color: object.veins.map_or(Vec3::ZERO, |veins| veins.color).to_array(),
+            veins,
         }
     }
 }

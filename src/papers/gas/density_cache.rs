@@ -10,7 +10,8 @@ use crate::gpu::{Buffer, Error, Frame, Pass};
 
 /// The pass `density-cache`.
 pub struct DensityCache {
-    /// Densities of functions or files, before the solid fades them: a table a volume, x fastest.
+    /// Densities of functions or files, before the solid fades them: a table a volume, x fastest, of each entry its own and those
+    /// of the ones after it in x, in y, and in both.
     pub densities: Arc<Buffer>,
     /// Entries along each axis.
     pub size: u32,
@@ -27,7 +28,7 @@ impl DensityCache {
         let volume_count = context.parameters.volumes.len() as u32;
         let count = u64::from(size).pow(3) * u64::from(volume_count);
         let densities =
-            context.storage::<f32>("density-cache", count).map_err(|error| error.set_by("density-cache"))?;
+            context.storage::<[f32; 4]>("density-cache", count).map_err(|error| error.set_by("density-cache"))?;
         let shader = format!("gas/density-cache-{}.comp", context.parameters.density_source());
         let pass = Pass::compute("density-cache", "Discussion of results", &shader)
             .with("frame", &scene.frame)

@@ -85,7 +85,7 @@ impl Parameters {
                 ("light", optional(shadows, NUMBER * fragments * lights)),
                 ("volume-file", NUMBER * samples as f64),
                 ("volume-temperature", optional(self.glows(), RADIANCE * samples as f64)),
-                ("density-cache", NUMBER * cached),
+                ("density-cache", 4.0 * NUMBER * cached),
                 ("bricks", NUMBER * bricks),
                 ("froxels", 2.0 * RADIANCE * froxels),
                 ("table", NUMBER * table * volumes * (1.0 + lights)),

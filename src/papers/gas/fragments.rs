@@ -44,17 +44,18 @@ impl Fragments {
         lists: &ABuffer,
     ) -> Result<Pass, Error> {
         let parameters = context.parameters;
+        let has_gas = scene.has_surface_gas();
+        let shader = if has_gas { "gas/fragments-gas.frag" } else { "gas/fragments-plain.frag" };
         let stages = if has_geometry_stage {
-            let pass = Pass::graphics("fragments", "A-buffer", "gas/fragments.vert", "gas/fragments.frag");
+            let pass = Pass::graphics("fragments", "A-buffer", "gas/fragments.vert", shader);
             pass.geometry("gas/fragments.geom").topology(Topology::Points)
         } else {
-            Pass::graphics("fragments", "A-buffer", "gas/fragments-pulled.vert", "gas/fragments.frag")
+            Pass::graphics("fragments", "A-buffer", "gas/fragments-pulled.vert", shader)
         };
+        let stages = if has_gas { scene.solid_textures(stages) } else { stages };
         stages
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
-            .with("Volumes", &scene.volumes)
-            .with("Offsets", &scene.offsets)
             .with("Vertices", &piece.vertices)
             .with("Triangles", &piece.triangles)
             .with("Objects", &scene.objects)

@@ -9,21 +9,23 @@ use crate::papers::layout::{check_block, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for shader in ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept.comp", "gas/resolve.comp"] {
+    for shader in
+        ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept-one.comp", "gas/resolve-none.comp"]
+    {
         check_block::<FrameBlock>(shader, "frame");
     }
-    check_list::<VolumeBlock>("gas/volume-traced-functions-kept.comp", "Volumes");
-    check_list::<GridBlock>("gas/volume-traced-trilinear-kept.comp", "Grids");
-    check_list::<LightBlock>("gas/volume-traced-functions-kept.comp", "Lights");
+    check_list::<VolumeBlock>("gas/volume-traced-functions-kept-one.comp", "Volumes");
+    check_list::<GridBlock>("gas/volume-traced-trilinear-kept-one.comp", "Grids");
+    check_list::<LightBlock>("gas/volume-traced-functions-kept-one.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
-    check_list::<TriangleBlock>("gas/fragments.frag", "Triangles");
-    check_list::<LinkBlock>("gas/fragments.frag", "Links");
-    check_list::<SurfaceBlock>("gas/fragments.frag", "Surfaces");
-    check_list::<ColorBlock>("gas/fragments.frag", "Colors");
+    check_list::<TriangleBlock>("gas/fragments-plain.frag", "Triangles");
+    check_list::<LinkBlock>("gas/fragments-plain.frag", "Links");
+    check_list::<SurfaceBlock>("gas/fragments-plain.frag", "Surfaces");
+    check_list::<ColorBlock>("gas/fragments-plain.frag", "Colors");
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
-    check_list::<SectionBlock>("gas/volume-table-functions-kept.comp", "Sections");
-    check_block::<CountsBlock>("gas/resolve.comp", "counts");
+    check_list::<SectionBlock>("gas/volume-table-functions-kept-one.comp", "Sections");
+    check_block::<CountsBlock>("gas/resolve-none.comp", "counts");
     check_block::<UnfinishedBlock>("gas/sort.comp", "Unfinished");
     check_block::<CountersBlock>("gas/sort.comp", "Counters");
 }

@@ -256,7 +256,9 @@ impl Gas {
     pub fn kept_fragments(&self, shaders: &ShaderLibrary) -> Result<Option<u64>, Error> {
         match self.parameters.lists {
             Lists::Linked => Ok(Some(self.passes.lists.wanted_fragments(shaders)?)),
-            Lists::Tiles | Lists::Nearest(_) if (self.passes.lists.capacity.rows as usize) < self.rows.len() => Ok(None),
+            Lists::Tiles | Lists::Nearest(_) if (self.passes.lists.capacity.rows as usize) < self.rows.len() => {
+                Ok(None)
+            }
             Lists::Tiles | Lists::Nearest(_) => {
                 Ok(Some(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum()))
             }
@@ -351,7 +353,7 @@ impl Paper for Gas {
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let lists = &self.passes.lists;
-        let tile_calls = tiles::calls(lists.most_of_tile(shaders)?);
+        let tile_calls = tiles::calls(lists.most_of_tile(shaders)?, self.scene.has_surface_gas());
         let capacity = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)?;
         if capacity.is_none() && tile_calls <= self.tile_calls {
             self.lost_pixels = lists.lost_pixels(shaders)?;
@@ -404,7 +406,7 @@ impl Paper for Gas {
         let row = self.parameters.table_size;
         let lights = self.parameters.lights.len() as u32;
         let buffers = [
-            cache.map(|pass| Target::table("density-cache", &pass.densities, pass.size).of("density before it fades, a table of each volume, x fastest")),
+            cache.map(|pass| Target::table("density-cache", &pass.densities, 4).of("densities before they fade, a table of each volume, x fastest: an entry, and those after it in x, in y, in both")),
             bricks.map(|pass| Target::table("bricks", &pass.bounds, pass.size).of("greatest density of a brick, 0 where it is skipped, a table of each volume, x fastest")),
             density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row).of("density, a table of each volume, x fastest")),
             shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row).of("density times metres towards the light, a table of each volume and light, x fastest")),

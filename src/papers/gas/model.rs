@@ -136,6 +136,15 @@ pub struct Checker {
     pub edge_m: f32,
 }
 
+/// A second colour in all three dimensions, by a solid texture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Veins {
+    /// Where the texture is 1, linear RGB.
+    pub color: Vec3,
+    /// Its part of the surface's colour, 0 to 1.
+    pub texture: SolidTexture,
+}
+
 /// Phong's highlight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Highlight {
@@ -156,6 +165,8 @@ pub struct Object {
     pub opacity: f32,
     /// Squares of a second colour.
     pub checker: Option<Checker>,
+    /// Veins of another colour.
+    pub veins: Option<Veins>,
     /// Its highlight, 0 for none.
     pub highlight: Highlight,
     /// Triangles are seen from behind as well.
@@ -166,6 +177,8 @@ pub struct Object {
     pub fade_m: f32,
     /// Distances in x and z from its origin at which such a gas has faded out, over as many metres; 0 for no such end.
     pub ends_m: Vec2,
+    /// Cosine between its normal and the ray below which such a gas fades towards its silhouette, 0 (not at all) to 1.
+    pub rim: f32,
     /// Metres a frame.
     pub per_frame_m: Vec3,
 }
@@ -173,10 +186,14 @@ pub struct Object {
 impl Object {
     /// The same without its triangles.
     pub fn without_mesh(&self) -> Self {
-        let Object { mesh: _, color, opacity, checker, highlight, is_two_sided, gas, fade_m, ends_m, per_frame_m } =
-            *self;
-        let mesh = Mesh::default();
-        Object { mesh, color, opacity, checker, highlight, is_two_sided, gas, fade_m, ends_m, per_frame_m }
+        let &Object { color, opacity, checker, veins, highlight, is_two_sided, gas, fade_m, ends_m, rim, .. } = self;
+        let (mesh, per_frame_m) = (Mesh::default(), self.per_frame_m);
+        Object { mesh, color, opacity, checker, veins, highlight, is_two_sided, gas, fade_m, ends_m, rim, per_frame_m }
+    }
+
+    /// Its solid textures: that of its gas, then that of its veins.
+    pub fn solid_textures(&self) -> impl Iterator<Item = &SolidTexture> {
+        self.gas.iter().chain(self.veins.as_ref().map(|veins| &veins.texture))
     }
 
     /// A dull opaque object, seen from both sides.
@@ -186,11 +203,13 @@ impl Object {
             color,
             opacity: 1.0,
             checker: None,
+            veins: None,
             highlight: Highlight { strength: 0.0, exponent: 1.0 },
             is_two_sided: true,
             gas: None,
             fade_m: 0.0,
             ends_m: Vec2::ZERO,
+            rim: 0.0,
             per_frame_m: Vec3::ZERO,
         }
     }

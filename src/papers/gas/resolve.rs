@@ -44,7 +44,11 @@ impl Resolve {
                 &[0; size_of::<SectionBlock>()],
             ),
         };
-        let pass = Pass::compute("resolve", "A-buffer", "gas/resolve.comp")
+        let has_veins = scene.has_veins();
+        let shader = if has_veins { "gas/resolve-solid.comp" } else { "gas/resolve-none.comp" };
+        let pass = Pass::compute("resolve", "A-buffer", shader);
+        let pass = if has_veins { scene.solid_textures(pass) } else { pass };
+        let pass = pass
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Lights", &scene.lights)

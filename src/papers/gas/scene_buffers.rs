@@ -53,7 +53,7 @@ impl SceneBuffers {
         };
         let mut volumes: Vec<VolumeBlock> =
             parameters.volumes.iter().map(|v| VolumeBlock::of_volume(v, parameters.steps)).collect();
-        volumes.extend(objects.iter().filter_map(|o| o.gas.as_ref()).map(VolumeBlock::of_texture));
+        volumes.extend(objects.iter().flat_map(Object::solid_textures).map(VolumeBlock::of_texture));
         if volumes.is_empty() {
             volumes.push(bytemuck::Zeroable::zeroed());
         }
@@ -99,6 +99,21 @@ impl SceneBuffers {
         }
     }
 
+    /// Some surface is a gas.
+    pub fn has_surface_gas(&self) -> bool {
+        self.objects_without_meshes.iter().any(|object| object.gas.is_some())
+    }
+
+    /// Some surface has veins.
+    pub fn has_veins(&self) -> bool {
+        self.objects_without_meshes.iter().any(|object| object.veins.is_some())
+    }
+
+    /// A pass with the solid textures of surfaces.
+    pub fn solid_textures(&self, pass: PassBuilder) -> PassBuilder {
+        pass.with("Volumes", &self.volumes).with("Offsets", &self.offsets)
+    }
+
     /// A pass with what its shader takes densities from.
     pub fn densities(&self, pass: PassBuilder) -> PassBuilder {
         match &self.grids {
@@ -113,11 +128,8 @@ impl SceneBuffers {
         self.frame.write(0, bytemuck::bytes_of(&block))?;
         self.counts.write(0, bytemuck::bytes_of(&CountsBlock::new(parameters, gas, capacity)))?;
         let mut textures = parameters.volumes.len()..;
-        let mut blocks: Vec<ObjectBlock> = self
-            .objects_without_meshes
-            .iter()
-            .map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next())))
-            .collect();
+        let mut blocks: Vec<ObjectBlock> =
+            self.objects_without_meshes.iter().map(|o| ObjectBlock::new(o, number, &mut textures)).collect();
         if blocks.is_empty() {
             blocks.push(bytemuck::Zeroable::zeroed());
         }

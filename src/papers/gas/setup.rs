@@ -436,6 +436,7 @@ impl Study for Setup {
             preset("fig-7", "Figure 7: volume fog that rolls over a chess board", || Setup::of(Preset::Fig7)),
             preset("fig-8", "Figure 8: steam and one glass, the default", || Setup::of(Preset::Fig8)),
             preset("solid", "A solid (hypertexture) volume", || Setup::of(Preset::Solid)),
+            preset("clouds", "A layer of clouds and clouds on ellipsoids, by surfaces", || Setup::of(Preset::Clouds)),
         ]
     }
 
@@ -473,7 +474,7 @@ impl Study for Setup {
         self.ways.alone().into_iter().map(of).collect()
     }
 
-    /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.
+    /// The figure's; of those without volumes, as figure 4, `table` where the user adds some.
     fn rendered(&self, _: Option<Variant>) -> Variant {
         match self.scene.variant() {
             Variant::NoVolume if !(self.placements.is_empty() && self.volume_files.is_empty()) => Variant::Table,

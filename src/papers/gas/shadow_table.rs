@@ -23,6 +23,8 @@ host_block! {
         cell: [i32; 3],
         /// First entry of the volume's densities.
         first_density: u32,
+        /// First column and row of entries that the wavefront may have.
+        first_column: [i32; 2],
         /// First entry of the volume's and light's sums.
         first_sum: u32,
     }
@@ -74,8 +76,10 @@ impl ShadowTable {
         for wave in 0..most {
             frame.compute(&self.pass, |dispatch| {
                 for sweep in self.sweeps.iter().filter(|s| wave < s.count) {
-                    let constants = WaveConstants { distance: wave as i32, ..sweep.first };
-                    dispatch.constants(&constants).threads(self.size, self.size, 1);
+                    let [(x, columns), (y, rows)] =
+                        [0, 1].map(|axis| sweep.extent(axis, wave as i32, self.size as i32));
+                    let constants = WaveConstants { distance: wave as i32, first_column: [x, y], ..sweep.first };
+                    dispatch.constants(&constants).threads(columns, rows, 1);
                 }
             })?;
         }
@@ -108,9 +112,57 @@ impl Sweep {
                 distance: 0,
                 cell,
                 first_density,
+                first_column: [0; 2],
                 first_sum,
             },
             count: farthest.max(0) as u32 + 1,
+        }
+    }
+
+    /// The first entry along an axis that a wavefront may have, and the number of those from there on.
+    fn extent(&self, axis: usize, distance: i32, size: i32) -> (i32, u32) {
+        let last = size - 1;
+        let farthest = |cell: i32| cell.max(last - 1 - cell);
+        let of_others: i32 = (0..3).filter(|&other| other != axis).map(|other| farthest(self.first.cell[other])).sum();
+        let nearest = (distance - of_others).max(0);
+        let (low, high) = match self.first.cell[axis] {
+            -1 => (nearest, distance),
+            cell if cell == last => (last - distance, last - nearest),
+            cell => (cell - distance, cell + 1 + distance),
+        };
+        let (low, high) = (low.max(0), high.min(last));
+        (low, (high - low + 1).max(1) as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::gas::parameters::default_volume;
+
+    /// The wavefronts' extents hold every entry of their distance, and those of a light beside the table are not half empty.
+    #[test]
+    fn extents_hold_their_entries() {
+        let size = 9;
+        for position in [Vec3::new(0.3, -0.2, 0.6), Vec3::new(3.0, 0.1, -4.0), Vec3::new(2.0, 5.0, 3.0), Vec3::ONE] {
+            let light = Light::Point { position, intensity: Vec3::ONE };
+            let sweep = Sweep::new(&default_volume(), &light, size, 0, 0);
+            let along = |entry: i32, cell: i32| if entry <= cell { cell - entry } else { entry - cell - 1 };
+            let (mut entries, mut threads) = (0, 0);
+            for wave in 0..sweep.count as i32 {
+                let [(x, columns), (y, rows)] = [0, 1].map(|axis| sweep.extent(axis, wave, size as i32));
+                threads += columns * rows;
+                for i in 0..(size * size * size) as i32 {
+                    let entry = [i % 9, i / 9 % 9, i / 81];
+                    if (0..3).map(|axis| along(entry[axis], sweep.first.cell[axis])).sum::<i32>() == wave {
+                        entries += 1;
+                        let is_in = |entry: i32, first: i32, count: u32| (first..first + count as i32).contains(&entry);
+                        assert!(is_in(entry[0], x, columns) && is_in(entry[1], y, rows), "{position} {wave} {entry:?}");
+                    }
+                }
+            }
+            assert_eq!(entries, size * size * size, "{position}");
+            assert!(threads < 2 * entries, "{position}: {threads}");
         }
     }
 }

@@ -31,14 +31,14 @@ pub const TILE: u32 = 8;
 pub const CHUNK_BYTES: u64 = 8 * (TILE * TILE) as u64;
 /// Triangles of a chunk.
 const CHUNK: u32 = 32;
-/// Chunks of a tile that a dispatch of `fragments` does.
-const CHUNKS_A_CALL: u32 = 32;
+/// Chunks of a tile that a dispatch of `fragments` does, without surface-defined gases and with some.
+const CHUNKS_A_CALL: [u32; 2] = [32, 4];
 /// Threads of a row of a dispatch with a thread a triangle.
 const TRIANGLES_A_ROW: u32 = 1 << 16;
 /// Chunks of a row of a dispatch with a workgroup a chunk.
 const CHUNKS_A_ROW: u32 = 1 << 15;
 /// Bytes of a triangle in a chunk.
-const TRIANGLE_BYTES: u64 = 8;
+const TRIANGLE_BYTES: u64 = 16;
 /// Bytes of a tile's count and place.
 const TILE_BYTES: u64 = 8;
 
@@ -47,7 +47,7 @@ pub struct Tiles {
     chunks: u32,
     /// Of each tile its triangles and its first chunk.
     tiles: Arc<Buffer>,
-    /// Of each place in a chunk the number of a triangle, and the depth of its nearest corner.
+    /// Of each place in a chunk the number of a triangle, and the depths of its nearest and its farthest corner.
     triangles: Arc<Buffer>,
     empty: Pass,
     sum: Pass,
@@ -116,8 +116,8 @@ pub fn bytes(parameters: &Parameters, capacity: Capacity) -> f64 {
 }
 
 /// Dispatches of `fragments` for tiles of up to so many triangles.
-pub fn calls(most_of_tile: u32) -> u32 {
-    most_of_tile.div_ceil(CHUNK).div_ceil(CHUNKS_A_CALL).max(1)
+pub fn calls(most_of_tile: u32, has_surface_gas: bool) -> u32 {
+    most_of_tile.div_ceil(CHUNK).div_ceil(CHUNKS_A_CALL[usize::from(has_surface_gas)]).max(1)
 }
 
 impl Tiles {
@@ -127,7 +127,7 @@ impl Tiles {
         let capacity = lists.capacity;
         let chunks = u64::from(capacity.chunks);
         let tiles = context.storage::<[u32; 2]>("tiles", tile_count(context.parameters, capacity) + 1)?;
-        let triangles = context.storage::<[u32; 2]>("tile-triangles", chunks * u64::from(CHUNK))?;
+        let triangles = context.storage::<[u32; 4]>("tile-triangles", chunks * u64::from(CHUNK))?;
         let chunk_tiles = context.storage::<u32>("chunk-tiles", chunks)?;
         let pixels = context.storage::<[u32; 2]>("tile-pixels", chunks * u64::from(TILE * TILE))?;
         let pixel_count = u64::from(context.parameters.width) * u64::from(capacity.rows);
@@ -161,10 +161,10 @@ impl Tiles {
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
     pub fn read(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<u32>>, Error> {
         let tiles = read::<[u32; 2]>(shaders, &self.tiles)?;
-        let triangles = read::<[u32; 2]>(shaders, &self.triangles)?;
+        let triangles = read::<[u32; 4]>(shaders, &self.triangles)?;
         let of_tile = |&[count, first_chunk]: &[u32; 2]| {
             let places = triangles.iter().skip((first_chunk * CHUNK) as usize).take(count as usize);
-            places.map(|[triangle, _]| *triangle).collect()
+            places.map(|[triangle, ..]| *triangle).collect()
         };
         Ok(tiles.iter().take(tiles.len().saturating_sub(1)).map(of_tile).collect())
     }

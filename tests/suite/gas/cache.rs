@@ -23,7 +23,15 @@ fn the_cache_holds_the_functions() {
             let medium = Medium::new(&parameters, FRAME);
             let expected = Values::new(&gas, size, |world| medium.texture_density(&gas.texture, Some(&gas), world));
             let mut needed = 0;
-            for (i, (&found, &value)) in drawing.target("density-cache").iter().zip(expected.values()).enumerate() {
+            let entries: Vec<[f32; 4]> =
+                drawing.target("density-cache").chunks_exact(4).map(|e| [0, 1, 2, 3].map(|i| e[i])).collect();
+            let side = size as usize;
+            for (i, &value) in expected.values().iter().enumerate() {
+                let found = entries[i][0];
+                // Beside it stand those after it, of the last ones the first.
+                let (x, y, layer) = (i % side, i / side % side, i / (side * side) * side * side);
+                let of = |x: usize, y: usize| entries[layer + y % side * side + x % side][0];
+                assert_eq!(entries[i][1..], [of(x + 1, y), of(x, y + 1), of(x + 1, y + 1)]);
                 if expected.is_needed(i) {
                     needed += 1;
                     assert!(

@@ -19,4 +19,5 @@ mod skipping;
 mod slab;
 mod surfaces;
 mod tables;
+mod textures;
 mod tiles;

@@ -1,7 +1,7 @@
 //! The figures' scenes, small, and bad numbers.
 
 use fumarole::gpu::Compiler;
-use fumarole::papers::gas::model::Object;
+use fumarole::papers::gas::model::{Highlight, Object};
 use fumarole::papers::gas::parameters::validate_object;
 use fumarole::papers::gas::scenes::Preset;
 use fumarole::papers::gas::{Parameters, Variant};
@@ -86,6 +86,54 @@ fn a_board_hides_its_pieces_from_below() {
                 }
             }
             assert!(hidden > 500, "{preset:?}: {hidden} pixels of the board");
+        }
+    });
+}
+
+/// Fog lies over the feet of figure 4's pieces as it does over the board round them: where a piece stands on the board the fog before
+/// both is the same, and on a piece it has no edges, neither those of a disc nor those of planes that cut it.
+#[test]
+fn fog_lies_over_a_foot_as_over_the_board_round_it() {
+    gpu_test(|device| {
+        let (parameters, objects) = small(Preset::Fig4);
+        // What is left of white surfaces behind black fog, in light from all around, is the fog's transparency.
+        let parameters = Parameters {
+            width: 512,
+            height: 384,
+            lights: vec![Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::ZERO }],
+            ambient: Vec3::ONE,
+            ..parameters
+        };
+        let plain = |object: Object| {
+            let color = if object.gas.is_some() { Vec3::ZERO } else { Vec3::ONE };
+            let highlight = Highlight { strength: 0.0, ..object.highlight };
+            Object { color, checker: None, highlight, ..object }
+        };
+        let objects: Vec<Object> = objects.into_iter().map(plain).collect();
+        let frame = Preset::Fig4.bench_frame();
+        let drawing = Drawing::frame(device, Compiler::Glslang, Variant::NoVolume, &parameters, &objects, frame);
+        // The opaque surface that fills a pixel, if one does: its object and its mean depth.
+        let surface = |pixel: usize| {
+            let whole = drawing.lists[pixel].iter().find(|f| f.opacity == 1.0 && f.mask == u32::MAX);
+            whole.map(|f| (f.object, f.depth_m[0].midpoint(f.depth_m[1])))
+        };
+        let (mut on_pieces, mut at_feet) = (Vec::new(), Vec::new());
+        for above in 0..(parameters.width * (parameters.height - 3)) as usize {
+            // The edge itself is between two such pixels.
+            let below = above + 3 * parameters.width as usize;
+            let (Some((upper, upper_m)), Some((lower, lower_m))) = (surface(above), surface(below)) else { continue };
+            let change = (drawing.red(above) - drawing.red(below)).abs();
+            if upper > 0 && lower == 0 && (upper_m - lower_m).abs() < 0.15 {
+                at_feet.push(change);
+            } else if upper > 0 && lower == upper && (upper_m - lower_m).abs() < 0.05 {
+                on_pieces.push(change);
+            }
+        }
+        for (place, mut changes) in [("feet", at_feet), ("pieces", on_pieces)] {
+            changes.sort_by(f64::total_cmp);
+            let [middle, most] = [changes[changes.len() / 2], changes[changes.len() * 98 / 100]];
+            println!("{place}: {} places, {middle:.3} in the middle, {most:.3} at most of 98 %", changes.len());
+            assert!(changes.len() > 80 && middle < 0.05 && most < 0.2, "{place}: {middle} and {most}");
         }
     });
 }

@@ -392,7 +392,7 @@ fn what_a_device_was_not_opened_with_is_refused() {
         let lesser = same.without(Feature::FragmentStores).without(Feature::GeometryShader);
         let lesser = Device::open(device.instance(), lesser).unwrap();
         let library = shaders(&lesser);
-        let stores = Pass::graphics("stores", "", "gas/fragments-pulled.vert", "gas/fragments.frag");
+        let stores = Pass::graphics("stores", "", "gas/fragments-pulled.vert", "gas/fragments-plain.frag");
         let text = message(stores.extent(4, 4).build(&library));
         assert!(text.contains("which the device does not take"), "{text}");
         let strip = Pass::graphics("strip", "", "test/splat-point.vert", "test/splat.frag").geometry("test/strip.geom");

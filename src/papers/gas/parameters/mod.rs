@@ -263,10 +263,12 @@ impl Parameters {
         if self.density_cache.is_some() { "cached" } else { self.density_source() }
     }
 
-    /// The same of rays that march, with the way that they take through what is empty.
+    /// The same of rays that march, with the way that they take through what is empty, and through one volume under one light
+    /// or several of either.
     pub(super) fn ray_shader(&self) -> String {
         let empty = if self.skip_empty.is_some() { "skipped" } else { "kept" };
-        format!("{}-{empty}", self.density_shader())
+        let count = if self.volumes.len() == 1 && self.lights.len() == 1 { "one" } else { "several" };
+        format!("{}-{empty}-{count}", self.density_shader())
     }
 
     /// The optical depth that a ray through a volume may lose in its bricks; nothing where there are no bricks, as where no
@@ -452,8 +454,10 @@ const CAMERA: Field<Parameters, EyeAndTarget> = Field {
 pub fn validate_object(object: &Object) -> Result<(), ParameterError> {
     ParameterError::check((0.0..=1.0).contains(&object.opacity), "opacity", object.opacity, "must be 0 to 1")?;
     ParameterError::check(is_color(object.color, 1.0), "color", components(object.color), "must be 0 to 1")?;
-    let gas = object.gas.map(|texture| Volume { texture, ..default_volume() });
-    volumes::check(&gas.into_iter().collect())
+    let vein_color = object.veins.map_or(Vec3::ZERO, |veins| veins.color);
+    ParameterError::check(is_color(vein_color, 1.0), "color", components(vein_color), "must be 0 to 1")?;
+    let textures = object.solid_textures().map(|&texture| Volume { texture, ..default_volume() });
+    volumes::check(&textures.collect())
 }
 
 fn validate_light(light: &Light) -> Result<(), ParameterError> {

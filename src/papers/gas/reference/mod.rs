@@ -12,3 +12,4 @@ pub mod phase;
 pub mod rays;
 pub mod resolve;
 pub mod shadow_table;
+pub mod texture;

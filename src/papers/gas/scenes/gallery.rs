@@ -4,17 +4,25 @@ use glam::{Mat4, Vec2, Vec3};
 
 use super::lathe::{curve, turned};
 use super::{Scene, block, bright, floor, placed, shiny};
-use crate::papers::gas::model::{Checker, DensityFunction, Object, Shape, SolidTexture, Volume};
+use crate::papers::gas::model::{Checker, DensityFunction, Object, Shape, SolidTexture, Veins, Volume};
 use crate::papers::gas::parameters::{Parameters, default_volume};
 use crate::scene::{Camera, Light, shapes};
 
 const BALL_M: Vec3 = Vec3::new(0.0, 1.75, 0.0);
 
+/// Veins of marble: a sine wave through the turbulent space, narrow where it is dense.
+fn marble(color: Vec3, scale_per_m: f32) -> Option<Veins> {
+    let function = DensityFunction::Clouds { frequency: 9.0 };
+    let texture = SolidTexture { function, opaque: 0.85, power: 3.0, scale_per_m, offset: Vec3::new(2.3, 6.1, 4.7) };
+    Some(Veins { color, texture })
+}
+
 fn pedestal() -> Object {
     let points = [(0.50, 0.0), (0.48, 0.12), (0.30, 0.25), (0.24, 0.5), (0.30, 0.78), (0.45, 0.88), (0.45, 0.95)];
     let mut profile = curve(&points.map(|(x, y)| Vec2::new(x, y)), 6);
     profile.extend([Vec2::new(0.45, 0.95), Vec2::new(0.0, 0.95)]);
-    shiny(placed(turned("pedestal", &profile, 48), Vec3::ZERO, Vec3::new(0.55, 0.53, 0.50)), 0.2, 20.0)
+    let stone = placed(turned("pedestal", &profile, 48), Vec3::ZERO, Vec3::new(0.55, 0.53, 0.50));
+    shiny(Object { veins: marble(Vec3::new(0.16, 0.17, 0.20), 2.0), ..stone }, 0.2, 20.0)
 }
 
 /// A framed picture on the back wall.
@@ -43,7 +51,8 @@ fn room() -> Vec<Object> {
     let scale = 0.9 / bounds.diagonal().max_element();
     let foot = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z) * scale;
     let stand = Vec3::new(2.1, 0.7, -1.2);
-    objects.push(block(Vec3::new(1.7, 0.0, -1.6), Vec3::new(2.5, 0.7, -0.8), Vec3::new(0.6, 0.58, 0.55)));
+    let stone = block(Vec3::new(1.7, 0.0, -1.6), Vec3::new(2.5, 0.7, -0.8), Vec3::new(0.20, 0.30, 0.24));
+    objects.push(Object { veins: marble(Vec3::new(0.62, 0.66, 0.60), 2.6), ..stone });
     let place = Mat4::from_translation(stand - foot) * Mat4::from_scale(Vec3::splat(scale));
     objects.push(shiny(Object::new(teapot.transformed(&place), Vec3::new(0.55, 0.35, 0.12)), 0.6, 40.0));
     objects

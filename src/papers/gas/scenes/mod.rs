@@ -1,6 +1,7 @@
 //! The scenes of the paper's figures, modelled anew from procedural meshes.
 
 mod chess;
+mod clouds;
 mod gallery;
 mod glass;
 mod lathe;
@@ -33,6 +34,8 @@ pub enum Preset {
     Fig8,
     /// A solid (hypertexture) volume on a pedestal.
     Solid,
+    /// A layer of clouds, and clouds on ellipsoids, by surfaces.
+    Clouds,
 }
 
 /// A scene with its numbers.
@@ -45,9 +48,17 @@ pub struct Scene {
 }
 
 impl Preset {
-    /// In the paper's order.
-    pub const ALL: [Preset; 7] =
-        [Preset::Fig3, Preset::Fig4, Preset::Fig5, Preset::Fig6, Preset::Fig7, Preset::Fig8, Preset::Solid];
+    /// In the paper's order, then ours.
+    pub const ALL: [Preset; 8] = [
+        Preset::Fig3,
+        Preset::Fig4,
+        Preset::Fig5,
+        Preset::Fig6,
+        Preset::Fig7,
+        Preset::Fig8,
+        Preset::Solid,
+        Preset::Clouds,
+    ];
 
     /// The name that the command line and the record know it by.
     pub fn as_str(self) -> &'static str {
@@ -59,6 +70,7 @@ impl Preset {
             Preset::Fig7 => "fig-7",
             Preset::Fig8 => "fig-8",
             Preset::Solid => "solid",
+            Preset::Clouds => "clouds",
         }
     }
 
@@ -74,7 +86,7 @@ impl Preset {
     /// A frame in which there is gas, for benchmarks.
     pub fn bench_frame(self) -> u32 {
         match self {
-            Preset::Fig3 | Preset::Fig5 | Preset::Solid => 0,
+            Preset::Fig3 | Preset::Fig5 | Preset::Solid | Preset::Clouds => 0,
             Preset::Fig4 => 60,
             Preset::Fig6 | Preset::Fig8 => 60,
             Preset::Fig7 => 400,
@@ -85,7 +97,7 @@ impl Preset {
     pub fn variant(self) -> super::Variant {
         match self {
             Preset::Fig3 => super::Variant::None,
-            Preset::Fig4 => super::Variant::NoVolume,
+            Preset::Fig4 | Preset::Clouds => super::Variant::NoVolume,
             Preset::Fig5 | Preset::Fig8 | Preset::Solid => super::Variant::Table,
             Preset::Fig6 | Preset::Fig7 => super::Variant::Surfaces,
         }
@@ -100,6 +112,7 @@ impl Preset {
             Preset::Fig7 => chess::volume_fog(),
             Preset::Fig8 => glass::one_glass(),
             Preset::Solid => gallery::solid(),
+            Preset::Clouds => clouds::scene(),
         }
     }
 }

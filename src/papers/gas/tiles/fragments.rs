@@ -18,14 +18,16 @@ pub(super) fn fragments(
     losses: Option<&Arc<Buffer>>,
 ) -> Result<Pass, Error> {
     let Scope { scene, lists, .. } = scope;
-    let shader = match context.parameters.lists.nearest() {
-        Some(_) => "gas/fragments-nearest.comp",
-        None => "gas/fragments-tiles.comp",
+    let has_gas = scene.has_surface_gas();
+    let shader = match (context.parameters.lists.nearest(), has_gas) {
+        (Some(_), false) => "gas/fragments-nearest-plain.comp",
+        (Some(_), true) => "gas/fragments-nearest-gas.comp",
+        (None, false) => "gas/fragments-tiles-plain.comp",
+        (None, true) => "gas/fragments-tiles-gas.comp",
     };
-    let pass = scope
-        .pass_of_chunks("fragments", shader, piece)
-        .with("Volumes", &scene.volumes)
-        .with("Offsets", &scene.offsets)
+    let pass = scope.pass_of_chunks("fragments", shader, piece);
+    let pass = if has_gas { scene.solid_textures(pass) } else { pass };
+    let pass = pass
         .with("Heads", &lists.heads)
         .with("Links", &lists.links)
         .with("Surfaces", &lists.surfaces)
