@@ -1,10 +1,12 @@
 //! Long runs: `cargo bench --bench soak -- [PAPER|all] [FRAMES] [DEVICE]`, which `dist/soak.sh` calls. A paper runs frame
 //! after frame in one process, and must end as it began: no memory but what the first frames took, the same live
-//! objects, the picture of a fresh run, and after a restart the times of the first frames.
+//! objects, the picture of a fresh run, and after a restart the times of the same frames in a fresh process, which runs
+//! them in turn with it: whatever else the machine does slows both.
 
 use std::ffi::OsStr;
 use std::fs;
-use std::process::ExitCode;
+use std::io::{self, BufRead, BufReader, Write};
+use std::process::{Child, ChildStdout, Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use fumarole::gpu::Mode;
@@ -17,8 +19,12 @@ use fumarole::papers;
 
 /// Frames after which pipelines, pools and the allocator have what they keep.
 const WARMUP: u32 = 200;
-/// Frames that are timed after the first start and again after the last.
+/// Frames that are timed after the last, and in a fresh process.
 const TIMED: u32 = 500;
+/// Frames of one side after the other.
+const BLOCK: u32 = 10;
+/// Word after the others that makes a process the fresh one.
+const FRESH: &str = "fresh";
 /// Frames from one look at the live objects to the next.
 const PERIOD: u32 = 500;
 /// Most that a run may leave behind.
@@ -44,6 +50,7 @@ struct Soak {
     paper: String,
     frames: u32,
     machine: MachineOptions,
+    is_fresh: bool,
     failures: Vec<String>,
 }
 
@@ -68,12 +75,14 @@ impl Visitor for Soak {
 
         settled(&mut machine, &mut built.paper)?;
         built.paper.restart()?;
-        let mut times_ms = vec![];
+        if self.is_fresh {
+            return answer(&mut machine, &mut built.paper);
+        }
         let (mut objects, mut resident_kb) = (machine.device.live().alive(), 0);
         let mut is_constant = true;
         for number in 0..last {
             let paper = &mut built.paper;
-            times_ms.push(machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?.frame_ms);
+            machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
             if number == WARMUP {
                 (objects, resident_kb) = (machine.device.live().alive(), resident());
             }
@@ -86,14 +95,14 @@ impl Visitor for Soak {
         is_constant &= machine.device.live().alive() == objects;
 
         built.paper.restart()?;
+        let mut fresh = Fresh::start(S::PAPER, &self.machine)?;
         let mut ratios = vec![];
-        for number in 0..TIMED.min(last) {
-            let paper = &mut built.paper;
-            let again_ms = machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?.frame_ms;
-            ratios.push(again_ms / times_ms[number as usize]);
+        for block in 0..TIMED.min(last) / BLOCK {
+            let fresh_ms = fresh.block()?;
+            ratios.push(block_ms(&mut machine, &mut built.paper, block)? / fresh_ms);
         }
-        ratios.sort_by(f64::total_cmp);
-        let slower = ratios[ratios.len() / 2];
+        fresh.end();
+        let slower = middle(ratios);
         drop(built);
 
         let mut fresh = build(&machine, &study, &scene, S::RENDERED)?;
@@ -122,6 +131,62 @@ impl Visitor for Soak {
     }
 }
 
+/// Median of a block's frames, milliseconds.
+fn block_ms(machine: &mut Machine, paper: &mut impl Paper, block: u32) -> Result<f64, Error> {
+    let mut times_ms = vec![];
+    for number in block * BLOCK..(block + 1) * BLOCK {
+        times_ms.push(machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?.frame_ms);
+    }
+    Ok(middle(times_ms))
+}
+
+fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Times a block of frames for each line that is read, as the fresh process.
+fn answer(machine: &mut Machine, paper: &mut impl Paper) -> Result<(), Error> {
+    for (block, line) in io::stdin().lines().enumerate() {
+        line.map_err(|error| Error::Input(format!("reading what to time: {error}")))?;
+        println!("{}", block_ms(machine, paper, block as u32)?);
+    }
+    Ok(())
+}
+
+/// A fresh process that times blocks of frames, one whenever it is asked to.
+struct Fresh {
+    child: Child,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Fresh {
+    fn start(paper: &str, machine: &MachineOptions) -> Result<Self, Error> {
+        let failed = |error: io::Error| Error::Input(format!("starting a fresh process: {error}"));
+        let mut command = Command::new(std::env::current_exe().map_err(failed)?);
+        command.args([paper, "0"]).args(&machine.device).arg(FRESH);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let answers = BufReader::new(child.stdout.take().expect("the output is piped"));
+        Ok(Fresh { child, answers })
+    }
+
+    /// Median of the next block's frames, milliseconds.
+    fn block(&mut self) -> Result<f64, Error> {
+        let failed = |problem: String| Error::Input(format!("timing frames in a fresh process: {problem}"));
+        let input = self.child.stdin.as_mut().expect("the input is piped");
+        input.write_all(b"\n").and_then(|()| input.flush()).map_err(|error| failed(error.to_string()))?;
+        let mut line = String::new();
+        self.answers.read_line(&mut line).map_err(|error| failed(error.to_string()))?;
+        line.trim().parse().map_err(|_| failed(format!("it answered {line:?}")))
+    }
+
+    /// Its input ends, and so does it.
+    fn end(mut self) {
+        drop(self.child.stdin.take());
+        let _ = self.child.wait();
+    }
+}
+
 /// Runs the frames of the warm-up until no buffer grows any more.
 fn settled(machine: &mut Machine, paper: &mut impl Paper) -> Result<(), Error> {
     loop {
@@ -145,13 +210,16 @@ fn resident() -> i64 {
 fn main() -> ExitCode {
     fumarole::gpu::pin_software_threads();
     // cargo adds an option of its own.
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let mut words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let is_fresh = words.last().is_some_and(|word| word == FRESH);
+    words.truncate(words.len() - usize::from(is_fresh));
     let word = |at: usize| words.get(at).cloned();
     let frames = word(1).and_then(|text| text.parse().ok()).unwrap_or(20_000);
     let mut soak = Soak {
         paper: word(0).unwrap_or_else(|| "all".to_owned()),
         frames: if frames > 2 * WARMUP { frames } else { 2 * WARMUP },
         machine: MachineOptions { device: word(2), ..MachineOptions::default() },
+        is_fresh,
         failures: vec![],
     };
     if let Err(error) = papers::each(&mut soak) {

@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 status=0
 
-echo '| Paper, variant | Device | Frames | Growth after warm-up | Live objects | Last picture and a fresh run'"'"'s | Equal frames after and before | Took |'
+echo '| Paper, variant | Device | Frames | Growth after warm-up | Live objects | Last picture and a fresh run'"'"'s | Equal frames after and in a fresh process | Took |'
 echo '| --- | --- | --- | --- | --- | --- | --- | --- |'
 cargo bench --quiet --locked --bench soak -- "$paper" "$frames" "$device" || status=1
 
