@@ -24,7 +24,7 @@ use super::work::Fetched;
 pub struct Frame<'a> {
     /// The recorder that runs it.
     pub(super) recorder: &'a mut Recorder,
-    /// What is measured of it: times, counters or nothing.
+    /// Kind of what is measured of it: times, counters or nothing.
     pub(super) mode: Mode,
     /// Number of this submission in the frame, from 0 on.
     pub(super) submission: u32,

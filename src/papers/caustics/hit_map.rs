@@ -65,7 +65,7 @@ pub struct HitPass<'a> {
     pub scope: Scope<'a>,
     /// Heights of the receiver.
     pub pyramid: &'a PositionPyramid,
-    /// What the first surface hides.
+    /// Surfaces that the first hides.
     pub hidden: Option<&'a HiddenSurfaces>,
 }
 

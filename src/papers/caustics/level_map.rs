@@ -42,7 +42,7 @@ pub enum Slicing {
 pub struct ReceiverPasses {
     /// Position and diffuse map.
     pub maps: ReceiverMaps,
-    /// What the first surface hides from the light's box, by `hit` with several layers.
+    /// Surfaces that the first hides from the light's box, by `hit` with several layers.
     pub hidden: Option<HiddenSurfaces>,
     /// `None` for uniform planes.
     pub smart: Option<SmartSlicing>,

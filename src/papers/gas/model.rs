@@ -139,7 +139,7 @@ pub struct Checker {
 /// A second colour in all three dimensions, by a solid texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Veins {
-    /// Where the texture is 1, linear RGB.
+    /// Colour at 1 of the texture, linear RGB.
     pub color: Vec3,
     /// Its part of the surface's colour, 0 to 1.
     pub texture: SolidTexture,

@@ -184,7 +184,7 @@ fn straight_light_finds_nothing_hidden() {
     });
 }
 
-/// What lies below an overhang is seen lit, and nothing is darker for it.
+/// A surface below an overhang is seen lit, and nothing is darker for it.
 #[test]
 fn a_picture_shows_the_light_below_an_overhang() {
     gpu_test(|device| {
