@@ -1,6 +1,7 @@
 //! The window as its user feels it, on an Xvfb of its own: `cargo bench --bench window -- [interface] [latency] [idle]
-//! [soak SECONDS]`; without a word the first three. No validation layer. The worker draws the whole time but for `idle`.
-//! Each is held against its bar, and one that is missed ends the run with exit code 1.
+//! [soak SECONDS] [pictures FOLDER]`; without a word the first three. No validation layer. The worker draws the whole time
+//! but for `idle`. Each is held against its bar, and one that is missed ends the run with exit code 1. `pictures` makes those
+//! of the window that the pages show.
 
 #[path = "../tests/suite/common.rs"]
 #[expect(dead_code, reason = "the harness is that of the tests")]
@@ -15,11 +16,13 @@ mod cli {
 mod display;
 
 use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use display::{Display, Window};
+use fumarole::image::{Rgba8, write_png};
 use fumarole::measure::statistics::median;
 use program::{Running, fumarole};
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat};
@@ -46,6 +49,14 @@ const MOST_GROWN_KB: i64 = 2 << 10;
 const LIGHT: &str = "caustics --size 600x375";
 /// As [`LIGHT`], of a picture that is made to fit.
 const LARGE: &str = "caustics --size 800x500";
+/// What the pages show of each paper, texel by pixel, and how many passes on lies the one that is looked at.
+const PICTURES: [(&str, &str, usize); 5] = [
+    ("lava", "--size 600x400 --particles 2000", 4),
+    ("gas", "--size 600x400", 4),
+    ("caustics", "--size 600x400 --floor --shadows --intensity vertex --fresnel --coverage 2", 5),
+    ("burning", "--size 600x400 --frame 60", 2),
+    ("terrain", "--size 600x400 --variant gpu-fragment", 2),
+];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
@@ -64,6 +75,9 @@ fn main() -> ExitCode {
     if let Some(at) = words.iter().position(|word| word == "soak") {
         let seconds = words.get(at + 1).and_then(|text| text.parse().ok()).expect("soak SECONDS");
         missed.extend(soak(Duration::from_secs(seconds)));
+    }
+    if let Some(at) = words.iter().position(|word| word == "pictures") {
+        pictures(Path::new(words.get(at + 1).expect("pictures FOLDER")));
     }
     missed.iter().for_each(|bar| eprintln!("window: {bar}"));
     if missed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
@@ -216,6 +230,31 @@ fn soak(time: Duration) -> Option<String> {
     let grown = [0, 1].map(|process| last[process] as i64 - first[process] as i64);
     println!("soak: grown by {} kB the window and {} kB its worker since the first minute", grown[0], grown[1]);
     held(grown.into_iter().all(|kb| kb <= MOST_GROWN_KB), format!("memory grows by more than {MOST_GROWN_KB} kB"))
+}
+
+fn pictures(folder: &Path) {
+    for (paper, scene, passes) in PICTURES {
+        let display = Display::start();
+        let mut window = Window::start(&display, fumarole(&format!("view {paper} {scene}")));
+        window.resize(1280, 800);
+        window.display.key('m' as u32);
+        window.wait("times", |window| window.says("median of 9 frames").then_some(()));
+        for _ in 0..passes {
+            display.key(']' as u32);
+        }
+        window.wait("the pass's target", |window| (!window.shows("picture")).then_some(()));
+        display.key('t' as u32);
+        window.wait("the picture", |window| window.shows("picture").then_some(()));
+        // Small pictures and plots come after.
+        sleep(Duration::from_secs(2));
+        let screen = display.screenshot();
+        let of_window = screen.pixels().chunks_exact(4 * screen.width() as usize).take(800);
+        let rows = of_window.flat_map(|row| &row[..4 * 1280]).copied().collect();
+        let file = folder.join(format!("view-{paper}.png"));
+        write_png(&file, &Rgba8::new(1280, 800, rows).expect("a picture")).expect("the folder can be written");
+        println!("pictures: {}", file.display());
+        window.close().succeeded();
+    }
 }
 
 /// Prints the samples, and gives their median and the largest.

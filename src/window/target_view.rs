@@ -252,6 +252,7 @@ fn show_histogram(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, dra
         ui.checkbox(&mut view.is_logarithmic, "log");
     });
     let (response, painter) = ui.allocate_painter(egui::vec2(ui.available_width(), 42.0), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "histogram"));
     let rect = response.rect;
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
     let height = |count: u64| if view.is_logarithmic { (count as f64 + 1.0).ln() } else { count as f64 };

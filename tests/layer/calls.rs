@@ -141,6 +141,8 @@ static NEXT_ENDS: [AtomicUsize; ENDS.len() + 1] = [const { AtomicUsize::new(0) }
 /// Calls so far, by their names.
 static COUNTS: Mutex<BTreeMap<&str, usize>> = Mutex::new(BTreeMap::new());
 static LOST: AtomicBool = AtomicBool::new(false);
+/// Text of the round's file.
+static ROUND: Mutex<String> = Mutex::new(String::new());
 static FAILED: Mutex<Option<&str>> = Mutex::new(None);
 static ALIVE: Mutex<BTreeMap<String, i64>> = Mutex::new(BTreeMap::new());
 
@@ -148,21 +150,38 @@ fn counts() -> MutexGuard<'static, BTreeMap<&'static str, usize>> {
     COUNTS.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
+/// The call that is to fail: of all, or of a round, which ends where its file has another text. What was counted in it is
+/// reported then, and forgotten.
+fn wanted() -> Option<String> {
+    let Some(path) = env::var_os("FUMAROLE_LAYER_ROUNDS") else { return env::var("FUMAROLE_LAYER_FAIL").ok() };
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let mut round = ROUND.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    if *round != text {
+        report();
+        counts().clear();
+        *FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = None;
+        LOST.store(false, Ordering::Release);
+        round.clone_from(&text);
+    }
+    text.split_once(' ').map(|(_, failing)| failing.to_owned())
+}
+
 /// Counts a call; its failure, if it is the one that is to fail.
 pub fn counted(name: &'static str) -> Option<vk::Result> {
+    let wanted = wanted();
     let number = {
         let mut counts = counts();
         let count = counts.entry(name).or_default();
         *count += 1;
         *count
     };
-    let wanted = env::var("FUMAROLE_LAYER_FAIL").ok()?;
+    let wanted = wanted?;
     if env::var("FUMAROLE_LAYER_ONLY").is_ok_and(|only| env::args().all(|argument| argument != only)) {
         return None;
     }
     let (call, failure) = wanted.split_once(':')?;
     let (wanted, at) = call.split_once('@')?;
-    if wanted != name || at.parse() != Ok(number) {
+    if wanted != name || at != "0" && at.parse() != Ok(number) {
         return None;
     }
     *FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(name);

@@ -3,7 +3,8 @@
 //!
 //! | variable | meaning |
 //! | --- | --- |
-//! | `FUMAROLE_LAYER_FAIL` | `vkCreateFence@3:host`, `:device` or `:lost`: the third call of that name fails so |
+//! | `FUMAROLE_LAYER_FAIL` | `vkCreateFence@3:host`, `:device` or `:lost`: the third call of that name fails so; `@0`: every one |
+//! | `FUMAROLE_LAYER_ROUNDS` | file with `ROUND vkCreateFence@3:host`: the same, counted anew and reported with each other text |
 //! | `FUMAROLE_LAYER_ONLY` | `worker`: calls fail in programs with this argument alone |
 //! | `FUMAROLE_LAYER_DISCRETE` | set: the device says that it is a GPU of its own |
 //! | `FUMAROLE_LAYER_LACKS` | features by the names of `fumarole devices`, comma-separated |

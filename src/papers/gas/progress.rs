@@ -112,15 +112,28 @@ impl Calls {
                 Err(Error::Pass { pass: pass.name().to_owned(), problem: format!("{problem}; {}", pass.way_out()) })
             };
             if found.stuck[at] != 0 {
-                return error("the device ends its loops before one step of some pixel is done".to_owned());
+                let pixels = unfinished_pixels(shaders, progress, pass)?;
+                return error(format!("the device ends its loops before one step of {pixels} is done"));
             }
             if found.unfinished[at] == calls {
                 if calls >= MOST_CALLS {
-                    return error(format!("{calls} dispatches do not finish some pixel"));
+                    let pixels = unfinished_pixels(shaders, progress, pass)?;
+                    return error(format!("{calls} dispatches do not finish {pixels}"));
                 }
                 raised.0[at] = calls.saturating_mul(GROWTH).min(MOST_CALLS);
             }
         }
         Ok(Some(raised).filter(|raised| *raised != self))
     }
+}
+
+/// The pixels that a pass has not finished, in words: those of the last band, where it has any.
+fn unfinished_pixels(shaders: &ShaderLibrary, progress: &Progress, pass: Carried) -> Result<String, Error> {
+    let states: Vec<StateBlock> = bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), &progress.states)?);
+    let of_pass = pass as u32 + 1;
+    Ok(match states.iter().filter(|state| state.words[11] == of_pass).count() {
+        0 => "some pixel".to_owned(),
+        1 => "1 pixel".to_owned(),
+        count => format!("{count} pixels"),
+    })
 }

@@ -21,7 +21,7 @@ fn dimensions(shape: &str) -> Vec<u64> {
 }
 
 /// The shape and the values of a NumPy array of floats or bytes.
-fn read_npy(path: &Path) -> (Vec<u64>, Vec<f64>) {
+pub fn read_npy(path: &Path) -> (Vec<u64>, Vec<f64>) {
     let bytes = std::fs::read(path).unwrap();
     let (header, data) = bytes[10..].split_at(u16::from_le_bytes([bytes[8], bytes[9]]).into());
     let header = std::str::from_utf8(header).unwrap();

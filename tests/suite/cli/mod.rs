@@ -14,7 +14,7 @@ mod burning_sweeps;
 pub mod compare;
 pub mod depth;
 mod devices;
-mod dumps;
+pub mod dumps;
 mod experiment;
 mod experiment_tables;
 mod gas;

@@ -1,8 +1,9 @@
 //! Every call that returns a result fails once, in set-up and frames of each paper: the program ends with one line, frees
 //! what it made and leaves old files alone.
 //!
-//! `FUMAROLE_TEST_ALL_FAULTS=1` fails every call in every way, which takes hours; else one call of each name in one way, drawn
-//! anew with `FUMAROLE_TEST_SEED`.
+//! One call of each name fails in one way, drawn anew with `FUMAROLE_TEST_SEED`. With `FUMAROLE_TEST_ALL_FAULTS=FILE` every
+//! call of every variant does, in [`rounds`]: out of host memory, out of device memory and with the device lost in turn, the
+//! first and the last of each name in each way. The file keeps what was found, and a run that was ended goes on from there.
 
 use std::env;
 use std::fs;
@@ -11,14 +12,14 @@ use std::path::Path;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::{Layer, PAPERS, Paper};
+use super::{Layer, PAPERS, Paper, rounds};
 use crate::cli::program::{Ended, ONCE, entries, folder};
 
 pub const FAILURES: [&str; 3] = ["host", "device", "lost"];
 /// Running out of memory for an object's name costs the name.
-const HARMLESS: &str = "vkSetDebugUtilsObjectNameEXT";
+pub const HARMLESS: &str = "vkSetDebugUtilsObjectNameEXT";
 /// The allocator takes other memory where the device has none left that the host can write, and so these may fail once.
-const MEMORY: [&str; 2] = ["vkAllocateMemory", "vkMapMemory"];
+pub const MEMORY: [&str; 2] = ["vkAllocateMemory", "vkMapMemory"];
 /// Calls before there is a device.
 const BEFORE_A_DEVICE: [&str; 6] = [
     "vkCreateInstance",
@@ -43,16 +44,8 @@ pub fn has_gone_on(name: &str, ended: &Ended) -> bool {
     MEMORY.contains(&name) && ended.status.success()
 }
 
-/// Calls to fail, by name and number, and how.
-fn chosen<'a>(paper: &Paper, calls: &'a [(String, usize)]) -> Vec<(&'a str, usize, &'static str)> {
-    if env::var_os("FUMAROLE_TEST_ALL_FAULTS").is_some() {
-        let each = |(name, count): &'a (String, usize)| (1..=*count).map(move |number| (name.as_str(), number));
-        return calls
-            .iter()
-            .flat_map(each)
-            .flat_map(|(name, at)| FAILURES.map(|failure| (name, at, failure)))
-            .collect();
-    }
+/// Calls of a sample, by name and number, and how they fail.
+fn sample<'a>(paper: &Paper, calls: &'a [(String, usize)]) -> Vec<(&'a str, usize, &'static str)> {
     let seed = env::var("FUMAROLE_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
     let mut random = Pcg32::new(seed, paper.name.len() as u64);
     let mut below = |count: usize| random.next_u32() as usize % count;
@@ -66,6 +59,9 @@ fn run(paper: &Paper, layer: &Layer, out: &Path, failing: &str) -> Ended {
 }
 
 fn assert_faults_are_told(paper: &Paper) {
+    if let Some(file) = env::var_os("FUMAROLE_TEST_ALL_FAULTS") {
+        return rounds::assert_all_faults_are_told(paper, Path::new(&file));
+    }
     let (layer, out) = (Layer::new(), folder());
     let ended = run(paper, &layer, out.path(), "").succeeded();
     let whole = layer.report(&ended);
@@ -75,7 +71,7 @@ fn assert_faults_are_told(paper: &Paper) {
     }
     // The record, the trace, and a picture of each variant.
     let written = entries(out.path());
-    for (name, number, failure) in chosen(paper, &whole.calls) {
+    for (name, number, failure) in sample(paper, &whole.calls) {
         let what = format!("{} with {name}@{number}:{failure}", paper.name);
         for name in &written {
             fs::write(out.path().join(name), "old").unwrap();

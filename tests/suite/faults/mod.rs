@@ -4,6 +4,7 @@ mod calls;
 mod files;
 pub mod lent;
 mod masks;
+mod rounds;
 
 use std::ffi::OsString;
 use std::fs;
@@ -28,7 +29,7 @@ pub const PAPERS: [Paper; 5] = [
         program: program::lava,
         scene: "--size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5 --splat-radius 0.2",
     },
-    Paper { name: "gas", program: program::gas, scene: "--size 24x16 --steps 4 --table 4" },
+    Paper { name: "gas", program: program::gas, scene: "--size 24x16 --steps 4 --table 4 --froxels 9x7x8" },
     Paper {
         name: "caustics",
         program: program::caustics,
@@ -38,7 +39,7 @@ pub const PAPERS: [Paper; 5] = [
         name: "burning",
         program: program::burning,
         scene: "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --speed 1 --flammability 10 --mesh sphere --triangles 100 \
-                --first-frame 30",
+                --first-frame 30 --levels 1",
     },
     Paper { name: "terrain", program: program::terrain, scene: "--size 32x24 --resolution 9" },
 ];
@@ -163,23 +164,7 @@ impl Layer {
         let text = fs::read_to_string(&path)
             .unwrap_or_else(|error| panic!("no report: {error}: {}: {}", ended.status, ended.stderr));
         fs::remove_file(path).unwrap();
-        let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
-        let fields = |name: &str| -> Vec<String> {
-            text.lines().filter_map(|line| line.strip_prefix(name)).map(str::to_owned).collect()
-        };
-        let calls = fields("call ").into_iter().map(|line| {
-            let (name, count) = line.split_once(' ').unwrap();
-            (name.to_owned(), count.parse().unwrap())
-        });
-        Report {
-            calls: calls.collect(),
-            failed: field("failed "),
-            alive: fields("alive "),
-            misuses: fields("misuse "),
-            frames: field("frames ").unwrap().parse().unwrap(),
-            labels: fields("label "),
-            pipelines: fields("pipeline "),
-        }
+        Report::of(&text)
     }
 }
 
@@ -200,6 +185,27 @@ pub struct Report {
 }
 
 impl Report {
+    /// What the layer wrote.
+    fn of(text: &str) -> Self {
+        let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
+        let fields = |name: &str| -> Vec<String> {
+            text.lines().filter_map(|line| line.strip_prefix(name)).map(str::to_owned).collect()
+        };
+        let calls = fields("call ").into_iter().map(|line| {
+            let (name, count) = line.split_once(' ').unwrap();
+            (name.to_owned(), count.parse().unwrap())
+        });
+        Report {
+            calls: calls.collect(),
+            failed: field("failed "),
+            alive: fields("alive "),
+            misuses: fields("misuse "),
+            frames: field("frames ").unwrap().parse().unwrap(),
+            labels: fields("label "),
+            pipelines: fields("pipeline "),
+        }
+    }
+
     /// Number of times that a call was made.
     pub fn count(&self, name: &str) -> usize {
         self.calls.iter().find(|(called, _)| called == name).map_or(0, |(_, count)| *count)

@@ -327,3 +327,24 @@ fn floor_without_lava_is_not_drawn() {
         }
     });
 }
+
+/// Loops leave particles out where more than they take lie in one place: that is told, and not drawn.
+#[test]
+fn more_particles_in_one_place_than_a_loop_takes_are_refused() {
+    gpu_test(|device| {
+        let flow = Flow { viscosity_pa_s: 0.0, corrections: 1, ..flowing().flow };
+        for (count, is_refused) in [(7_100, false), (7_300, true)] {
+            let parameters = Parameters { particles: count, flow: flow.clone(), ..flowing() };
+            let mut particles = Particles::of(&parameters);
+            particles.positions.fill(Vec3::splat(0.3));
+            let mut animate = animate(device, &parameters, &particles);
+            Recorder::new(device).unwrap().run(Mode::Plain, |frame| animate.record(frame)).unwrap();
+            let checked = animate.sph().unwrap().check(device).map_err(|error| error.to_string());
+            assert_eq!(checked.is_err(), is_refused, "{count} particles: {checked:?}");
+            if let Err(error) = checked {
+                let parts = ["sph-density", "`time-step`", "`particles`"];
+                assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+            }
+        }
+    });
+}

@@ -21,7 +21,7 @@ const F4: u32 = 0xffc1;
 /// The button that the wheel is.
 const WHEEL_UP: u8 = 4;
 
-fn pixel(picture: &Rgba8, x: u32, y: u32) -> [u8; 3] {
+pub fn pixel(picture: &Rgba8, x: u32, y: u32) -> [u8; 3] {
     let at = (y as usize * picture.width() as usize + x as usize) * 4;
     *picture.pixels()[at..].first_chunk().unwrap()
 }
@@ -51,7 +51,7 @@ pub fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 
 }
 
 /// True when anything is drawn in the rectangle.
-fn is_drawn(screen: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
+pub fn is_drawn(screen: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
     let corner = pixel(screen, left as u32, top as u32);
     (top..bottom).any(|y| (left..right).any(|x| pixel(screen, x as u32, y as u32) != corner))
 }

@@ -1,0 +1,251 @@
+//! Every call of every variant fails in turn, round after round in one process: the machine is opened, the paper made, measured
+//! and drawn, and all of it given up. A round takes a small part of what a program takes; exit codes and files are those of the
+//! programs in [`super::calls`].
+
+use std::collections::HashSet;
+use std::env;
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::panic::{self, AssertUnwindSafe};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::thread;
+
+use fumarole::gpu::{Instance, PhysicalDevice};
+use fumarole::measure::bench::{Bench, Loaded, load};
+use fumarole::measure::machine::{Machine, MachineOptions};
+use fumarole::measure::measure::{Schedule, Watch};
+use fumarole::measure::parameter::Given;
+use fumarole::measure::picture::render;
+use fumarole::measure::study::{Study, Visitor};
+use fumarole::measure::{Error, Paper as _, Variant};
+use fumarole::papers;
+
+use super::calls::{FAILURES, HARMLESS, MEMORY};
+use super::{Layer, PAPERS, Paper, Report};
+use crate::common::wanted_device;
+
+/// Paper whose rounds a process is to run, the file that keeps what was found, and that which tells the layer of rounds.
+const PAPER: &str = "FUMAROLE_TEST_FAULTY_PAPER";
+const FOUND: &str = "FUMAROLE_TEST_FAULTS_FOUND";
+const ROUND: &str = "FUMAROLE_LAYER_ROUNDS";
+/// Rounds of a process; the driver may keep some memory of each.
+const MOST_ROUNDS: usize = 1000;
+
+/// Runs the rounds of a paper that `found` has nothing of yet.
+pub fn assert_all_faults_are_told(paper: &Paper, found: &Path) {
+    let found = std::path::absolute(found).unwrap();
+    let summary = loop {
+        let layer = Layer::new();
+        let round = layer.folder.path().join("round");
+        fs::write(&round, "").unwrap();
+        let test = ["--exact", "faults::rounds::rounds_of_a_process", "--nocapture"];
+        let mut command = Command::new(env::current_exe().unwrap());
+        // Of many papers, two go on at a time.
+        command.args(test).envs(layer.environment(false)).env("LP_NUM_THREADS", "1");
+        let output = command.env(PAPER, paper.name).env(FOUND, &found).env(ROUND, &round).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        if !output.status.success() {
+            // What it was at was the end of it.
+            let text = format!("{text}{}", String::from_utf8_lossy(&output.stderr));
+            let at = fs::read_to_string(&round).unwrap();
+            let (variant, failing) = at.split_once(' ').filter(|(_, failing)| !failing.is_empty()).expect(&text);
+            let call = format!("{} {} {failing}", paper.name, variant.split('/').next_back().unwrap());
+            note(&mut open(&found), &call, Err(format!("the process ended with {}", output.status)));
+        } else if let Some(summary) = text.lines().find_map(|line| line.strip_prefix("rounds: ")) {
+            break summary.to_owned();
+        }
+    };
+    let log = fs::read_to_string(&found).unwrap();
+    let of_paper = format!("NOT TOLD: {} ", paper.name);
+    let failures: Vec<&str> = log.lines().filter(|line| line.starts_with(&of_paper)).collect();
+    println!("{}: {summary}, {} not told", paper.name, failures.len());
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+fn open(found: &Path) -> File {
+    OpenOptions::new().append(true).create(true).open(found).unwrap()
+}
+
+/// Keeps what was found of a call.
+fn note(found: &mut File, call: &str, outcome: Result<(), String>) {
+    let line = match outcome {
+        Ok(()) => format!("told: {call}\n"),
+        Err(problem) => format!("NOT TOLD: {call}: {}\n", problem.split_whitespace().collect::<Vec<_>>().join(" ")),
+    };
+    found.write_all(line.as_bytes()).unwrap();
+}
+
+/// Calls to fail, by name and number, and how: in turn, and the ends of each name in each way. Names of objects, which cost
+/// nothing but the name, fail all in one round (number 0).
+fn every(calls: &[(String, usize)]) -> Vec<(&str, usize, &'static str)> {
+    let mut all = Vec::new();
+    for (name, count) in calls {
+        let ends = [1, *count];
+        let is_asked = |number: &usize| name != HARMLESS || ends.contains(number);
+        for number in (1..=*count).filter(is_asked) {
+            let in_each_way = ends.contains(&number);
+            let ways = (0..FAILURES.len()).filter(|way| in_each_way || *way == number % FAILURES.len());
+            all.extend(ways.map(|way| (name.as_str(), number, FAILURES[way])));
+        }
+        if name == HARMLESS {
+            all.extend(["host", "device"].map(|failure| (name.as_str(), 0, failure)));
+        }
+    }
+    all
+}
+
+/// In a process of the tests: what is left of a paper's rounds. By itself: no call is left out.
+#[test]
+fn rounds_of_a_process() {
+    let papers: &'static [Paper] = &PAPERS;
+    let Some(paper) = env::var(PAPER).ok().and_then(|name| papers.iter().find(|paper| paper.name == name)) else {
+        let calls = [("vkCreateFence".to_owned(), 4), (HARMLESS.to_owned(), 9)];
+        let all = every(&calls);
+        for number in 1..=4 {
+            assert!(all.iter().any(|(name, at, _)| *name == "vkCreateFence" && *at == number), "{all:?}");
+        }
+        assert_eq!(all.iter().filter(|(name, ..)| *name == "vkCreateFence").count(), 3 + 1 + 1 + 3, "{all:?}");
+        assert_eq!(all.iter().filter(|(name, ..)| *name == HARMLESS).count(), 3 + 3 + 2, "{all:?}");
+        return;
+    };
+    let path = |variable: &str| PathBuf::from(env::var_os(variable).unwrap());
+    let log = fs::read_to_string(path(FOUND)).unwrap_or_default();
+    let call =
+        |line: &str| line.split_once(": ").map(|(_, rest)| rest.split(": ").next().unwrap_or_default().to_owned());
+    let mut rounds = Rounds {
+        paper,
+        round: path(ROUND),
+        report: path("FUMAROLE_LAYER_REPORT"),
+        done: log.lines().filter_map(call).collect(),
+        found: open(&path(FOUND)),
+        number: 0,
+        calls: 0,
+        variants: 0,
+        has_more: false,
+    };
+    papers::each(&mut rounds).unwrap();
+    if !rounds.has_more {
+        println!("\nrounds: {} failing calls of {} variants", rounds.calls, rounds.variants);
+    }
+}
+
+struct Rounds {
+    paper: &'static Paper,
+    round: PathBuf,
+    report: PathBuf,
+    /// Calls that were made to fail before, with paper, variant and way.
+    done: HashSet<String>,
+    found: File,
+    /// Rounds so far.
+    number: usize,
+    /// Calls to fail so far, and the variants that make them.
+    calls: usize,
+    variants: usize,
+    /// It ended before all was done.
+    has_more: bool,
+}
+
+impl Visitor for Rounds {
+    type Error = Error;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Error> {
+        if S::PAPER != self.paper.name {
+            return Ok(());
+        }
+        let study: S = study(self.paper.scene)?;
+        let loaded = load(&study)?;
+        // Keeps the driver loaded from round to round.
+        let anchor = Instance::new(false)?;
+        for &variant in S::Variant::ALL {
+            self.variants += 1;
+            let (whole, report) = self.run(&anchor, variant.as_str(), "", || bench(&study, &loaded, variant));
+            whole?;
+            for (name, number, failure) in every(&report.calls) {
+                let failing = format!("{name}@{number}:{failure}");
+                let call = format!("{} {} {failing}", S::PAPER, variant.as_str());
+                self.calls += 1;
+                if self.done.contains(&call) {
+                    continue;
+                }
+                if self.number >= MOST_ROUNDS {
+                    self.has_more = true;
+                    return Ok(());
+                }
+                let work = || panic::catch_unwind(AssertUnwindSafe(|| bench(&study, &loaded, variant)));
+                let (outcome, report) = self.run(&anchor, variant.as_str(), &failing, work);
+                note(&mut self.found, &call, judged((name, number, failure), outcome, &report));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Rounds {
+    /// A round in which a call fails, and what the layer saw in it.
+    fn run<T>(
+        &mut self,
+        anchor: &Arc<Instance>,
+        variant: &str,
+        failing: &str,
+        work: impl FnOnce() -> T,
+    ) -> (T, Report) {
+        self.number += 1;
+        fs::write(&self.round, format!("{}/{variant} {failing}", self.number)).unwrap();
+        let outcome = work();
+        fs::write(&self.round, format!("{}/after ", self.number)).unwrap();
+        // The layer ends a round with the first call of the next.
+        PhysicalDevice::enumerate(anchor).unwrap();
+        (outcome, Report::of(&fs::read_to_string(&self.report).unwrap()))
+    }
+}
+
+/// The set-up of options as they are typed.
+fn study<S: Study>(options: &str) -> Result<S, Error> {
+    let mut study = S::default();
+    let words: Vec<&str> = options.split_whitespace().collect();
+    let pairs = || words.chunks(2).map(|pair| (pair[0].trim_start_matches('-'), pair[1]));
+    for (name, value) in pairs() {
+        let declared = S::parameters().into_iter().find(|p| p.name == name).expect("the paper has the parameter");
+        declared.set(&mut study, &[OsStr::new(value)]).map_err(Error::Input)?;
+    }
+    study.resolve(&pairs().map(|(name, _)| name.to_owned()).collect::<Given>())?;
+    Ok(study.alternatives().swap_remove(0))
+}
+
+/// As the program's `bench` with a picture, from a device that is not open to one that is closed.
+fn bench<S: Study>(study: &S, loaded: &Loaded<S>, variant: S::Variant) -> Result<(), Error> {
+    static NEVER: AtomicBool = AtomicBool::new(false);
+    let options = MachineOptions { device: Some(wanted_device()), ..MachineOptions::default() };
+    let mut machine = Machine::open(&options, S::NEEDS)?;
+    let schedule = Schedule { warmup: 1, frames: 2, repeat: 1, min_time_s: 0.0 };
+    let mut watch = Watch { interrupted: &NEVER, progress: &mut |_, _| {} };
+    let bench = Bench { study, loaded, variants: &[variant], schedule, limits: None };
+    bench.measure_and(&mut machine, &mut watch, |machine, paper| {
+        paper.restart()?;
+        render(machine, paper, 0).map(drop)
+    })?;
+    Ok(())
+}
+
+/// Nothing is left alive, and the failure is told in one line.
+fn judged(
+    (name, number, failure): (&str, usize, &str),
+    outcome: thread::Result<Result<(), Error>>,
+    report: &Report,
+) -> Result<(), String> {
+    let outcome = outcome.map_err(|_| "it panicked".to_owned())?;
+    if report.alive != ["Instance 1"] {
+        return Err(format!("{:?} are alive", report.alive));
+    }
+    match (outcome, &report.failed) {
+        // A wait is asked again where the machine is slow, and the round that was counted had more of them.
+        (Ok(()), None) if report.count(name) < number => Ok(()),
+        (Ok(()), Some(_)) if MEMORY.contains(&name) || name == HARMLESS && failure != "lost" => Ok(()),
+        (Err(error), Some(_)) if error.to_string().lines().count() == 1 => Ok(()),
+        (outcome, failed) => Err(format!("{outcome:?} where {failed:?} failed")),
+    }
+}
