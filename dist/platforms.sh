@@ -3,9 +3,9 @@
 # name. It adds the Rust targets that it needs. What a step needs beside: windows a cross compiler (Debian's
 # g++-mingw-w64-x86-64-posix) and, to run the library's tests, wine; aarch64 a cross compiler (g++-aarch64-linux-gnu).
 #
-# windows compiles and links the programs, and runs the tests that need no device (all but those of gpu::tests). macos and aarch64 compile all Rust code
-# and link nothing. Build scripts compile C++ under `cargo check` too: for macOS, whose compiler and headers may not be
-# shipped, a stub stands in for it and makes empty objects, so that nothing is known of the C++ there.
+# windows compiles and links the programs, and runs the tests that need no device (all but those of gpu::tests). macos and
+# aarch64 compile all Rust code and link nothing. Build scripts compile C++ under `cargo check` too: for macOS, whose compiler
+# and headers may not be shipped, a stub stands in for it and makes empty objects, so that nothing is known of the C++ there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target/platforms}
@@ -20,9 +20,16 @@ need() {
     }
 }
 
+target() {
+    rustup target add "$1" 2>"$scratch/rustup" || {
+        printf 'platforms: the Rust target %s is not to be had here: %s\n' "$1" "$(tail -n 1 "$scratch/rustup")" >&2
+        exit 1
+    }
+}
+
 windows() {
     need x86_64-w64-mingw32-g++-posix g++-mingw-w64-x86-64-posix
-    rustup target add x86_64-pc-windows-gnu
+    target x86_64-pc-windows-gnu
     export CC_x86_64_pc_windows_gnu=x86_64-w64-mingw32-gcc-posix CXX_x86_64_pc_windows_gnu=x86_64-w64-mingw32-g++-posix
     export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=x86_64-w64-mingw32-g++-posix
     # One file runs by itself: the C++ runtime is part of it.
@@ -45,7 +52,7 @@ windows() {
 }
 
 macos() {
-    rustup target add aarch64-apple-darwin
+    target aarch64-apple-darwin
     cat >"$scratch/compiler" <<'STUB'
 #!/bin/sh
 # An empty object in place of every source, and the answers of a plain clang.
@@ -64,7 +71,7 @@ STUB
 
 aarch64() {
     need aarch64-linux-gnu-g++ g++-aarch64-linux-gnu
-    rustup target add aarch64-unknown-linux-gnu
+    target aarch64-unknown-linux-gnu
     env CC_aarch64_unknown_linux_gnu=aarch64-linux-gnu-gcc CXX_aarch64_unknown_linux_gnu=aarch64-linux-gnu-g++ \
         cargo check --release --locked --target aarch64-unknown-linux-gnu --all-targets
 }

@@ -101,8 +101,8 @@ fn every(calls: &[(String, usize)]) -> Vec<(&str, usize, &'static str)> {
 /// In a process of the tests: what is left of a paper's rounds. By itself: no call is left out.
 #[test]
 fn rounds_of_a_process() {
-    let papers: &'static [Paper] = &PAPERS;
-    let Some(paper) = env::var(PAPER).ok().and_then(|name| papers.iter().find(|paper| paper.name == name)) else {
+    let known: &'static [Paper] = &PAPERS;
+    let Some(paper) = env::var(PAPER).ok().and_then(|name| known.iter().find(|paper| paper.name == name)) else {
         let calls = [("vkCreateFence".to_owned(), 4), (HARMLESS.to_owned(), 9)];
         let all = every(&calls);
         for number in 1..=4 {
