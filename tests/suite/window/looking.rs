@@ -139,10 +139,18 @@ fn type_into(window: &mut Window<'_>, field: &str, number: &str) {
     window.wait(field, |window| beginning_with(window, field));
 }
 
-/// The line at the bottom while the pointer is at a place, once it begins with these words.
-fn line_at(window: &mut Window<'_>, place: (i16, i16), begins: &str) -> String {
-    window.display.point(place);
-    window.wait("the line at the pointer", |window| Some(beginning_with(window, begins)?.0))
+/// Place of a texel that the line at the bottom tells of, and what it says of it, while the pointer is within a texel of
+/// `texel` of a target whose corner lies there on the screen: the middle of the window may lie between two pixels.
+fn said_at(window: &mut Window<'_>, target: &str, corner: (i16, i16), texel: (i16, i16)) -> ([usize; 2], String) {
+    window.display.point((corner.0 + texel.0, corner.1 + texel.1));
+    window.wait("the line at the pointer", |window| {
+        let (line, _) = beginning_with(window, &format!("{target} "))?;
+        let (place, said) = line[target.len() + 1..].split_once(": ")?;
+        let (x, y) = place.split_once(", ")?;
+        let place: [usize; 2] = [x.parse().ok()?, y.parse().ok()?];
+        let is_near = place[0].abs_diff(texel.0 as usize) <= 1 && place[1].abs_diff(texel.1 as usize) <= 1;
+        is_near.then(|| (place, said.to_owned()))
+    })
 }
 
 #[test]
@@ -180,15 +188,14 @@ fn a_target_is_drawn_as_its_controls_say() {
         // Place, value and unit of texels under the pointer; the target lies in the middle, texel by pixel.
         let [left, top, right, bottom] = window.wait("the target", |window| window.try_image("caustics-map"));
         let corner = ((left + right) / 2 - 32, (top + bottom) / 2 - 32);
-        for (x, y) in [(8_i16, 50_i16), (33, 20), (60, 61)] {
-            let line = line_at(&mut window, (corner.0 + x, corner.1 + y), "caustics-map ");
-            let (place, said) = line["caustics-map ".len()..].split_once(": ").expect("a place and a value");
-            let place: Vec<usize> = place.split(", ").map(|number| number.parse().unwrap()).collect();
-            // A middle lies between two pixels.
-            assert!(place[0].abs_diff(x as usize) <= 1 && place[1].abs_diff(y as usize) <= 1, "{line} at {x}, {y}");
-            let value = map.0[place[1] * SIDE + place[0]];
-            let expected = format!("{value:.6} (I_c of eq. 4-18 for light of unit intensity; R32_SFLOAT)");
-            assert_eq!(said, expected, "{line}");
+        for texel in [(8, 50), (33, 20), (60, 61)] {
+            let ([x, y], said) = said_at(&mut window, "caustics-map", corner, texel);
+            let value = map.0[y * SIDE + x];
+            assert_eq!(
+                said,
+                format!("{value:.6} (I_c of eq. 4-18 for light of unit intensity; R32_SFLOAT)"),
+                "{x}, {y}"
+            );
         }
         window.close().succeeded();
     });
