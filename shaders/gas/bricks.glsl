@@ -6,18 +6,18 @@ layout(set = 0, binding = 30, std430) readonly buffer Bricks {
 };
 
 uint brick_at(uint v, ivec3 brick) {
-    int n = int(counts.bricks);
+    int n = int(brick_count);
     return uint(((int(v) * n + brick.z) * n + brick.y) * n + brick.x);
 }
 
 // From metres off the volume's middle to bricks.
 vec3 bricks_a_metre() {
-    return 0.5 * float(counts.bricks) / in_hand.half_extent_m;
+    return 0.5 * float(brick_count) / in_hand.half_extent_m;
 }
 
 // The brick of a position that is counted in bricks; outside the box the nearest one.
 ivec3 brick_of(vec3 at) {
-    return clamp(ivec3(floor(at)), ivec3(0), ivec3(int(counts.bricks) - 1));
+    return clamp(ivec3(floor(at)), ivec3(0), ivec3(int(brick_count) - 1));
 }
 
 // Along one axis, where a way of `along` bricks a metre leaves the brick.

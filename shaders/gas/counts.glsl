@@ -24,7 +24,11 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
 
 // Read once a thread: a processor that does many threads in step reads a storage buffer thread by thread.
 uint octaves = 0u;
+uint cache_size = 0u;
+uint brick_count = 0u;
 
 void read_counts() {
     octaves = counts.octaves;
+    cache_size = counts.cache;
+    brick_count = counts.bricks;
 }

@@ -7,7 +7,7 @@ layout(set = 0, binding = 29, std430) readonly buffer DensityCache {
 };
 
 float gas_density(vec3 world) {
-    uint n = counts.cache;
+    uint n = cache_size;
     vec3 q = (world - in_hand.center) / in_hand.half_extent_m * 0.5 + 0.5;
     vec3 position = clamp(q, 0.0, 1.0) * float(n - 1u);
     uvec3 low = min(uvec3(position), uvec3(n - 2u));

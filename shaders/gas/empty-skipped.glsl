@@ -4,7 +4,7 @@
 
 float empty_m(vec3 point, vec3 direction) {
     vec3 scale = bricks_a_metre();
-    vec3 at = (point - in_hand.center) * scale + 0.5 * float(counts.bricks);
+    vec3 at = (point - in_hand.center) * scale + 0.5 * float(brick_count);
     ivec3 brick = brick_of(at);
     if (brick_bounds[brick_at(index_in_hand, brick)] > 0.0) {
         return 0.0;

@@ -3,6 +3,7 @@ struct Facet {
     uint triangle;
     uint object;
     uvec3 corner;
+    vec3 offset; // of the object, m
     vec3 eye; // in the object's space
     vec3 p0;
     vec3 p1;
@@ -17,7 +18,8 @@ Facet facet_of(uint triangle) {
     facet.triangle = triangle;
     facet.corner = triangles[triangle].vertices;
     facet.object = triangles[triangle].object;
-    facet.eye = frame.eye - objects[facet.object].offset_m;
+    facet.offset = objects[facet.object].offset_m;
+    facet.eye = frame.eye - facet.offset;
     facet.p0 = vertices[facet.corner.x].position;
     facet.p1 = vertices[facet.corner.y].position;
     facet.p2 = vertices[facet.corner.z].position;

@@ -17,11 +17,9 @@ const uint SHOWS = 2u; // the pixel is counted
 
 bool is_before(Link link, Surface surface, uint slot) {
     float depth_m = mean_depth(link);
-    float other_m = mean_depth(links[slot]);
-    uvec2 number = uvec2(surface.object, surface.triangle);
-    uvec2 other = uvec2(surfaces[slot].object, surfaces[slot].triangle);
-    return depth_m < other_m || (depth_m == other_m
-        && (number.x < other.x || (number.x == other.x && number.y < other.y)));
+    float other_m = mean_depth(link_of(links[slot]));
+    // Triangles are numbered object by object.
+    return depth_m < other_m || (depth_m == other_m && surface.triangle < surfaces[slot].z);
 }
 
 void main() {
@@ -42,10 +40,10 @@ void main() {
     uint kept = 0u;
     uint node = is_mine ? heads[list] : NONE;
     while (node != NONE) {
-        node = links[node].next;
+        node = links[node].x;
         kept++;
     }
-    float last_m = kept == counts.nearest ? mean_depth(links[first + kept - 1u]) : 1.0e30;
+    float last_m = kept == counts.nearest ? mean_depth(link_of(links[first + kept - 1u])) : 1.0e30;
     // Nothing is lost before the first dispatch of a band.
     uint before = is_mine ? losses[list] * min(band.first_triangle + band.call, 1u) : 0u;
     bool has_lost = (before & LOST) != 0u;
@@ -78,10 +76,10 @@ void main() {
                     colors[slot] = colors[slot - 1u];
                     slot--;
                 }
-                links[slot] = fragment.link;
-                surfaces[slot] = fragment.surface;
-                colors[slot] = fragment.color;
-                last_m = kept == counts.nearest ? mean_depth(links[first + kept - 1u]) : 1.0e30;
+                links[slot] = link_words(fragment.link);
+                surfaces[slot] = surface_words(fragment.surface);
+                colors[slot] = color_words(fragment.color);
+                last_m = kept == counts.nearest ? mean_depth(link_of(links[first + kept - 1u])) : 1.0e30;
             }
         }
     }
@@ -89,7 +87,7 @@ void main() {
         is_ended = 1u;
     }
     for (uint i = 0u; i < kept; i++) {
-        links[first + i].next = i + 1u < kept ? first + i + 1u : NONE;
+        links[first + i].x = i + 1u < kept ? first + i + 1u : NONE;
     }
     if (kept > 0u) {
         heads[list] = first;
@@ -97,7 +95,7 @@ void main() {
     uint covered = 0u;
     for (uint i = 1u; i < kept; i++) {
         uint slot = first + i - 1u;
-        covered |= opacity_of(colors[slot]) >= 1.0 ? links[slot].mask : 0u;
+        covered |= opacity_of(Color(0u, colors[slot].y)) >= 1.0 ? links[slot].y : 0u;
     }
     bool shows = has_lost && covered != FULL;
     if (shows != ((before & SHOWS) != 0u)) {

@@ -98,7 +98,6 @@ void main() {
     uint used = 0u;
     uint behind = NONE; // the nearest fragment behind the cover
     float behind_m = 1.0e30;
-    uint behind_object = 0u;
     uint behind_triangle = 0u;
     chunk = has_room ? from : to;
     bits = 0u;
@@ -120,20 +119,19 @@ void main() {
             Fragment fragment = fragment_in(triangle, origin);
             float depth_m = mean_depth(fragment.link);
             bool is_behind = depth_m > bound_m;
-            uint object = fragment.surface.object;
-            uint number = fragment.surface.triangle;
-            bool is_nearest = depth_m < behind_m || (depth_m == behind_m && (object < behind_object
-                || (object == behind_object && number < behind_triangle)));
+            // Triangles are numbered object by object.
+            bool is_nearest = depth_m < behind_m
+                || (depth_m == behind_m && fragment.surface.triangle < behind_triangle);
             if (fragment.is_there && (!is_behind || is_nearest)) {
                 uint slot = is_behind ? first + wanted - 1u : first + used;
-                links[slot] = Link(head, fragment.link.mask, fragment.link.near_m, fragment.link.far_m);
-                surfaces[slot] = fragment.surface;
-                colors[slot] = fragment.color;
+                fragment.link.next = head;
+                links[slot] = link_words(fragment.link);
+                surfaces[slot] = surface_words(fragment.surface);
+                colors[slot] = color_words(fragment.color);
                 if (is_behind) {
                     behind = slot;
                     behind_m = depth_m;
-                    behind_object = object;
-                    behind_triangle = number;
+                    behind_triangle = fragment.surface.triangle;
                 } else {
                     head = slot;
                     used++;
@@ -143,7 +141,7 @@ void main() {
     }
     is_ended_here = is_ended_here || bits != 0u || chunk < to;
     if (behind != NONE) {
-        links[behind].next = head;
+        links[behind].x = head;
         head = behind;
     }
     if (is_mine) {

@@ -16,15 +16,15 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    Link links[];
+    uvec4 links[]; // each a Link
 };
 
 layout(set = 0, binding = 9, std430) buffer Surfaces {
-    Surface surfaces[];
+    uvec4 surfaces[]; // each a Surface
 };
 
 layout(set = 0, binding = 10, std430) buffer Colors {
-    Color colors[];
+    uvec2 colors[]; // each a Color
 };
 
 layout(location = 0) flat in vec4 corners_ab;
@@ -46,7 +46,7 @@ void main() {
         return; // counted: the host grows the buffers and repeats the run
     }
     fragment.link.next = atomicExchange(heads[list_of(pixel)], slot);
-    links[slot] = fragment.link;
-    surfaces[slot] = fragment.surface;
-    colors[slot] = fragment.color;
+    links[slot] = link_words(fragment.link);
+    surfaces[slot] = surface_words(fragment.surface);
+    colors[slot] = color_words(fragment.color);
 }

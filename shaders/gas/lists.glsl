@@ -37,6 +37,24 @@ struct Pixel {
     uint evaluations; // of the density
 };
 
+// As they stand in their buffers, which are read and written as vectors: each member by itself costs as much as all of them where
+// a processor does many threads in step.
+uvec4 link_words(Link link) {
+    return uvec4(link.next, link.mask, floatBitsToUint(link.near_m), floatBitsToUint(link.far_m));
+}
+
+uvec4 surface_words(Surface surface) {
+    return uvec4(surface.normal, surface.object, surface.triangle, floatBitsToUint(surface.coverage));
+}
+
+uvec2 color_words(Color color) {
+    return uvec2(color.red_green, color.blue_opacity);
+}
+
+Link link_of(uvec4 words) {
+    return Link(words.x, words.y, uintBitsToFloat(words.z), uintBitsToFloat(words.w));
+}
+
 const uint SECTION = 0x80000000u; // in a link: what follows is a section, not a fragment
 
 bool is_section(uint node) {

@@ -23,18 +23,29 @@ layout(set = 0, binding = 21, std430) readonly buffer Jitter {
     uint ranks[]; // of the texels of a mask of blue noise, row by row
 };
 
-// A number of 0 to 1 for a sample of a pixel. By the mask all samples of a ray lie at one place of their parts, which goes on by the
-// golden ratio from frame to frame: errors then depend on it alone, and differ from pixel to pixel as the mask does.
-float place_in_part(uint pixel_index, uint number) {
+// Of the pixel in hand, and of the frame.
+uint pixel_key = 0u;
+uint frame_key = 0u;
+float place_of_ray = -1.0; // of all its samples, where there is one
+
+// By the mask all samples of a ray lie at one place of their parts, which goes on by the golden ratio from frame to frame:
+// errors then depend on it alone, and differ from pixel to pixel as the mask does.
+void take_pixel(uint pixel_index) {
+    pixel_key = pixel_index * 0x9e3779b9u;
+    frame_key = scramble(frame.noise_seed + uint(frame.number));
     if (counts.jitter == BLUE_NOISE) {
-        uint column = pixel_index % frame.size.x % MASK_SIDE;
-        uint row = pixel_index / frame.size.x % MASK_SIDE;
-        uint h = (ranks[row * MASK_SIDE + column] << 20u) + 0x80000u;
+        uint row = pixel_index / frame.size.x;
+        uint column = (pixel_index - row * frame.size.x) % MASK_SIDE;
+        uint h = (ranks[row % MASK_SIDE * MASK_SIDE + column] << 20u) + 0x80000u;
         h += uint(frame.number) * 0x9e3779b9u;
-        return float(h >> 8u) / 16777216.0;
+        place_of_ray = float(h >> 8u) / 16777216.0;
     }
-    uint h = scramble(pixel_index * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
-    return float(h >> 8u) / 16777216.0;
+}
+
+// A number of 0 to 1 for a sample of the pixel.
+float place_in_part(uint number) {
+    uint h = scramble(pixel_key ^ scramble(number ^ frame_key));
+    return place_of_ray >= 0.0 ? place_of_ray : float(h >> 8u) / 16777216.0;
 }
 
 void read_scene() {
@@ -51,6 +62,7 @@ bool ends_at(float transparency) {
 // One section of a pixel, from the increments on that `begun` has; the samples before it are counted so that every
 // increment has its own random number.
 Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number, Gas begun) {
+    take_pixel(pixel_index);
     float scale = length(ray);
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -84,7 +96,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         uint increments = is_entry && gas.increments > 0u ? gas.increments - 1u : gas.increments;
         float from = float(increments) * step_m;
         float increment = min(step_m, length_m - from);
-        float at_m = from + increment * place_in_part(pixel_index, first_number + increments);
+        float at_m = from + increment * place_in_part(first_number + increments);
         if (is_entry && gas.increments == 0u) {
             at_m = 0.0;
         }
@@ -153,7 +165,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                 if (skipped > gas.increments) {
                     gas.increments = skipped;
                     from = float(skipped - 1u) * step_m;
-                    float part = place_in_part(pixel_index, first_number + skipped - 1u);
+                    float part = place_in_part(first_number + skipped - 1u);
                     previous_m = from + min(step_m, length_m - from) * part;
                 }
             }

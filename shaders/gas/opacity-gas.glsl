@@ -14,7 +14,7 @@ float gas_opacity(Facet facet, vec2 at, float depth, vec3 normal, float opacity)
     vec3 ray = ray_direction(at);
     vec3 point = facet.eye + ray * depth;
     take_volume(uint(texture_index));
-    float seen = opacity * mean_density(point + objects[facet.object].offset_m, facet.facing, ray, depth);
+    float seen = opacity * mean_density(point + facet.offset, facet.facing, ray, depth);
     vec2 ends_m = objects[facet.object].ends_m;
     float fade_m = objects[facet.object].fade_m;
     if (ends_m.x > 0.0) {

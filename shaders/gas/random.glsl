@@ -29,7 +29,7 @@ const float BEYOND = 5.0e-4;
 // The part of a way that the volume in hand is in as well.
 Flight through(Flight flight, vec3 point, vec3 direction) {
     vec3 scale = bricks_a_metre();
-    vec3 at = (point - in_hand.center) * scale + 0.5 * float(counts.bricks);
+    vec3 at = (point - in_hand.center) * scale + 0.5 * float(brick_count);
     ivec3 brick = brick_of(at);
     vec3 along = direction * scale;
     float most = max(abs(along.x), max(abs(along.y), abs(along.z)));

@@ -18,12 +18,13 @@ float mean_density(vec3 point, vec3 facing, vec3 ray, float depth) {
     along = bounded(along, LONGEST * depth * length(frame.ray_per_row));
     float parts_a_metre = in_hand.texture_scale_per_m * exp2(float(max(octaves, 1u)));
     vec2 parts = clamp(ceil(vec2(length(across), length(along)) * parts_a_metre), vec2(1.0), vec2(MOST_PARTS));
-    uint columns = uint(parts.x);
-    uint count = columns * uint(parts.y);
+    uint count = uint(parts.x) * uint(parts.y);
     float sum = 0.0;
+    vec2 part = vec2(0.0);
     uint i = 0u;
     for (; i < count; i++) {
-        vec2 at = (vec2(i % columns, i / columns) + 0.5) / parts - 0.5;
+        vec2 at = (part + 0.5) / parts - 0.5;
+        part = part.x + 1.0 < parts.x ? part + vec2(1.0, 0.0) : vec2(0.0, part.y + 1.0);
         sum += clamp(gas_density(point + across * at.x + along * at.y), 0.0, 1.0);
     }
     is_cut = is_cut || i < count;

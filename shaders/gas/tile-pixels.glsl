@@ -19,15 +19,15 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    Link links[];
+    uvec4 links[]; // each a Link
 };
 
 layout(set = 0, binding = 9, std430) buffer Surfaces {
-    Surface surfaces[];
+    uvec4 surfaces[]; // each a Surface
 };
 
 layout(set = 0, binding = 10, std430) buffer Colors {
-    Color colors[];
+    uvec2 colors[]; // each a Color
 };
 
 layout(set = 0, binding = 25, std430) readonly buffer TilePixels {
@@ -58,7 +58,7 @@ Chunks chunks_of_call(uint tile, bool is_mine) {
 // What a triangle that touches a pixel leaves in it.
 Fragment fragment_in(uint triangle, vec2 origin) {
     Facet facet = facet_of(triangle);
-    vec3 offset = objects[facet.object].offset_m;
-    Footprint seen = polygon_of(to_view(facet.p0 + offset), to_view(facet.p1 + offset), to_view(facet.p2 + offset));
+    Footprint seen = polygon_of(to_view(facet.p0 + facet.offset), to_view(facet.p1 + facet.offset),
+        to_view(facet.p2 + facet.offset));
     return fragment_of(facet, seen.ab, seen.cd, origin);
 }

@@ -1,8 +1,8 @@
 //! Host structs against the blocks of buffers that hold them.
 
 use super::blocks::{
-    ColorBlock, CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, LinkBlock, ObjectBlock, PixelBlock,
-    SectionBlock, SurfaceBlock, TriangleBlock, VertexBlock, VolumeBlock,
+    CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, ObjectBlock, PixelBlock, SectionBlock,
+    TriangleBlock, VertexBlock, VolumeBlock,
 };
 use super::progress::UnfinishedBlock;
 use crate::papers::layout::{check_block, check_list};
@@ -20,9 +20,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
     check_list::<TriangleBlock>("gas/fragments-plain.frag", "Triangles");
-    check_list::<LinkBlock>("gas/fragments-plain.frag", "Links");
-    check_list::<SurfaceBlock>("gas/fragments-plain.frag", "Surfaces");
-    check_list::<ColorBlock>("gas/fragments-plain.frag", "Colors");
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
     check_list::<SectionBlock>("gas/volume-table-functions-kept-one.comp", "Sections");
     check_block::<CountsBlock>("gas/resolve-none.comp", "counts");

@@ -84,7 +84,7 @@ fn the_opacity_of_a_gas_is_integrated_over_the_pixel() {
             };
             let [integrated, sampled] = distances(&Rays::new(&scene, 0), &texture, &gas, opacity);
             println!("{function:?}, {angle}: {integrated:.4} from the means, {sampled:.4} of one sample");
-            assert!(integrated < 0.012 && integrated < 0.4 * sampled, "{function:?}: {integrated} and {sampled}");
+            assert!(integrated < 0.008 && integrated < 0.3 * sampled, "{function:?}: {integrated} and {sampled}");
         }
     });
 }
@@ -111,7 +111,7 @@ fn veins_are_integrated_over_the_pixel() {
             };
             let [integrated, sampled] = distances(&Rays::new(&scene, 0), &texture, &object, part);
             println!("{function:?}: {integrated:.4} from the means, {sampled:.4} of one sample");
-            assert!(integrated < 0.012 && integrated < 0.4 * sampled, "{function:?}: {integrated} and {sampled}");
+            assert!(integrated < 0.008 && integrated < 0.3 * sampled, "{function:?}: {integrated} and {sampled}");
         }
         // Moved towards the eye it is the same surface elsewhere: the same at twice the distance from half as far away.
         let texture = texture(FUNCTIONS[0], 0.2);
@@ -140,12 +140,13 @@ fn a_gas_fades_towards_its_silhouette() {
         for rim in [0.0, 0.8] {
             let gas = Some(texture);
             let ellipsoid = Object { gas, rim, is_two_sided: false, ..Object::new(mesh.clone(), Vec3::ONE) };
-            let scene = parameters();
+            // Fine enough for triangles that fill pixels.
+            let scene = Parameters { width: 4 * WIDTH, height: 4 * HEIGHT, ..parameters() };
             let drawing = Drawing::of(device, Variant::NoVolume, &scene, &[ellipsoid]);
             let rays = Rays::new(&scene, 0);
             let mut faded = 0;
-            for (pixel, list) in drawing.lists.iter().enumerate() {
-                let place = [pixel as u32 % WIDTH, pixel as u32 / WIDTH].map(|p| f64::from(p) + 0.5);
+            for (pixel, list) in (0..).zip(&drawing.lists) {
+                let place = [pixel % scene.width, pixel / scene.width].map(|p| f64::from(p) + 0.5);
                 let ray = rays.direction(place[0], place[1]);
                 for fragment in list.iter().filter(|f| f.coverage == 1.0) {
                     // Where the ray meets the ellipsoid: |(r t - m) / h| = 1, and its gradient there.
@@ -184,6 +185,6 @@ fn clouds_cover_the_sky_in_part() {
         };
         let (clear, dense) = (share(&|o| o < 0.2), share(&|o| o > 0.8));
         println!("of the sky {clear:.2} is clear and {dense:.2} is dense");
-        assert!(sky.len() > 2000 && clear > 0.1 && dense > 0.1, "{} pixels, {clear}, {dense}", sky.len());
+        assert!(sky.len() > 2000 && clear > 0.05 && dense > 0.2, "{} pixels, {clear}, {dense}", sky.len());
     });
 }

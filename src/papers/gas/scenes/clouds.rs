@@ -20,7 +20,7 @@ fn texture(frequency: f32, opaque: f32, power: f32, scale_per_m: f32) -> SolidTe
 fn cloud(middle: Vec3, ellipsoids: &[(Vec3, Vec3)]) -> Vec<Object> {
     let ellipsoid = |&(offset, half_m): &(Vec3, Vec3)| {
         let place = Mat4::from_scale_rotation_translation(half_m, Quat::IDENTITY, middle + offset);
-        let gas = Some(texture(4.0, 1.0, 0.8, 1.1));
+        let gas = Some(texture(4.0, 1.0, 2.0, 1.1));
         let mesh = shapes::sphere(28, 14).transformed(&place);
         Object { gas, rim: 0.75, is_two_sided: false, ..Object::new(mesh, WHITE) }
     };
@@ -30,7 +30,7 @@ fn cloud(middle: Vec3, ellipsoids: &[(Vec3, Vec3)]) -> Vec<Object> {
 /// A layer over a land, and three clouds below it.
 pub fn scene() -> Scene {
     let land = Veins {
-        color: Vec3::new(0.26, 0.21, 0.12),
+        color: Vec3::new(0.20, 0.16, 0.09),
         texture: SolidTexture {
             function: DensityFunction::Turbulence,
             opaque: 1.5,
@@ -41,8 +41,8 @@ pub fn scene() -> Scene {
     };
     let layer = floor(Vec2::splat(120.0), 7.0, WHITE);
     let mut objects = vec![
-        Object { veins: Some(land), ..floor(Vec2::splat(240.0), 0.0, Vec3::new(0.07, 0.16, 0.05)) },
-        Object { gas: Some(texture(6.0, 1.0, 2.5, 0.22)), fade_m: 30.0, ends_m: Vec2::splat(60.0), ..layer },
+        Object { veins: Some(land), ..floor(Vec2::splat(240.0), 0.0, Vec3::new(0.05, 0.12, 0.04)) },
+        Object { gas: Some(texture(6.0, 1.0, 3.5, 0.22)), fade_m: 30.0, ends_m: Vec2::splat(60.0), ..layer },
     ];
     let wide = [
         (Vec3::ZERO, Vec3::new(2.0, 0.8, 1.2)),
@@ -52,11 +52,12 @@ pub fn scene() -> Scene {
     ];
     objects.extend(cloud(Vec3::new(-2.2, 3.2, -2.0), &wide));
     objects.extend(cloud(Vec3::new(4.6, 4.0, -8.0), &wide));
-    objects.extend(cloud(Vec3::new(3.0, 2.1, 2.0), &wide[1..]));
+    let small = wide.map(|(offset, half_m)| (0.55 * offset, 0.6 * half_m));
+    objects.extend(cloud(Vec3::new(3.0, 2.2, 2.0), &small));
     let parameters = Parameters {
         volumes: Vec::new(),
-        lights: vec![Light::Parallel { direction: Vec3::new(-0.5, -1.0, -0.55), intensity: Vec3::splat(0.8) }],
-        ambient: Vec3::new(0.30, 0.33, 0.38),
+        lights: vec![Light::Parallel { direction: Vec3::new(-0.5, -1.0, -0.55), intensity: Vec3::splat(0.6) }],
+        ambient: Vec3::new(0.50, 0.53, 0.58),
         background: Vec3::new(0.16, 0.33, 0.66),
         camera: Camera {
             eye: Vec3::new(0.5, 2.4, 12.0),
