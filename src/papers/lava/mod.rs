@@ -28,6 +28,7 @@ mod extract;
 mod gpu_driven;
 mod highest;
 mod highest_rows;
+pub mod kinds;
 pub mod lava_light;
 #[cfg(test)]
 mod layouts;

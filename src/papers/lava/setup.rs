@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::axes;
 use super::experiments::{self, Options};
+use super::kinds;
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::image::read_png_within;
@@ -60,6 +61,11 @@ impl Default for Setup {
 }
 
 impl Setup {
+    /// Those numbers, and nothing else.
+    fn of(parameters: Parameters) -> Self {
+        Setup { parameters, ..Setup::default() }
+    }
+
     /// Checks the parameters, and that what is drawn can be drawn together.
     ///
     /// # Errors
@@ -252,6 +258,7 @@ impl Study for Setup {
     }
 
     fn presets() -> Vec<Preset<Self>> {
+        let kind = |name, help, setup| Preset { name, help, variant: Some(Variant::GpuDriven), setup };
         vec![
             Preset {
                 name: "results",
@@ -263,7 +270,7 @@ impl Study for Setup {
                 name: "fig-6.2",
                 help: "Figures 5.1, 5.2 and 6.2: 65,536 particles, a finer grid",
                 variant: None,
-                setup: || Setup { parameters: Parameters::of_figure_6_2(), ..Setup::default() },
+                setup: || Setup::of(Parameters::of_figure_6_2()),
             },
             Preset {
                 name: "fig-8.5",
@@ -274,6 +281,19 @@ impl Study for Setup {
                     Setup { parameters, ..Setup::default() }
                 },
             },
+            kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
+                Setup::of(kinds::pahoehoe())
+            }),
+            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, in a hollow that halts it", || {
+                Setup::of(kinds::ropy())
+            }),
+            kind("toes", "Section 3.2: slow pahoehoe on uneven land, which breaks out along its front", || Setup {
+                bed: Some(HeightMapSource::Jacksboro),
+                ..Setup::of(kinds::toes())
+            }),
+            kind("aa", "Section 3.3: thicker, more viscous and faster, with a rough cold top", || {
+                Setup::of(kinds::aa())
+            }),
         ]
     }
 
