@@ -57,7 +57,7 @@ pub fn ropy() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(14.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 30.0, 2.0, 6000.0),
+        heat: heat(1423.0, 30.0, 2.0, 2500.0),
         ..Flow::default()
     };
     Parameters {
@@ -79,7 +79,7 @@ pub fn toes() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(4.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 60.0, 4.0, 2500.0),
+        heat: heat(1423.0, 60.0, 4.0, 1200.0),
         vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
         ..Flow::default()
     };
