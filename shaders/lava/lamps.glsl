@@ -8,10 +8,10 @@ struct Lamp {
 
 // Light that comes back from a white surface with this normal. A lamp that is nearer than it is large shines as a disc of its size
 // would (its area over the squared distance, and at most half of the sky). Nothing casts a shadow.
-vec3 light_of(Lamp lamp, vec3 place_m, vec3 normal) {
-    vec3 way_m = lamp.place.xyz - place_m;
+vec3 light_of(vec4 lamp, vec3 direction, vec3 light, vec3 place_m, vec3 normal) {
+    vec3 way_m = lamp.xyz - place_m;
     float squared = max(dot(way_m, way_m), 1.0e-12);
-    float seen = max(dot(way_m, normal), 0.0) * max(-dot(way_m, lamp.facing.xyz), 0.0) / squared;
-    float disc = lamp.place.w / 3.14159265;
-    return lamp.light.rgb * seen * disc / (squared + disc);
+    float seen = max(dot(way_m, normal), 0.0) * max(-dot(way_m, direction), 0.0) / squared;
+    float disc = lamp.w / 3.14159265;
+    return light * seen * disc / (squared + disc);
 }

@@ -35,12 +35,16 @@ void main() {
 #ifdef SIMULATION_SPH
     vec3 outwards = normal / max(length(normal), 1.0e-20);
     uint count = min(lamps.count.x, MOST_LAMPS);
-    to_front = vec3(0.0);
-    to_back = vec3(0.0);
+    vec3 front = vec3(0.0);
+    vec3 back = vec3(0.0);
     for (uint i = 0u; i < count; i++) {
-        Lamp lamp = lamps.list[i];
-        to_front += light_of(lamp, position, outwards);
-        to_back += light_of(lamp, position, -outwards);
+        vec4 place = lamps.list[i].place;
+        vec3 direction = lamps.list[i].facing.xyz;
+        vec3 light = lamps.list[i].light.rgb;
+        front += light_of(place, direction, light, position, outwards);
+        back += light_of(place, direction, light, position, -outwards);
     }
+    to_front = front;
+    to_back = back;
 #endif
 }
