@@ -1,10 +1,5 @@
-// Parts of the lava's surface that shine each as one.
-
-struct Lamp {
-    vec4 place; // metres, and square metres
-    vec4 facing; // unit normal
-    vec4 light; // linear for a black body's, else the display's
-};
+// Parts of the lava's surface that shine each as one, three vectors each: place in metres and area in square metres; unit normal and the
+// number of all lamps; light, linear for a black body's, else the display's.
 
 // Light that comes back from a white surface with this normal. A lamp that is nearer than it is large shines as a disc of its size
 // would (its area over the squared distance, and at most half of the sky). Nothing casts a shadow.

@@ -17,8 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1) uniform texture2D normal_height;
 
 layout(set = 0, binding = 2, std430) buffer Lamps {
-    uvec4 count; // in the first component
-    Lamp list[];
+    vec4 list[];
 } lamps;
 
 layout(push_constant, std430) uniform Squares {
@@ -58,10 +57,7 @@ void main() {
     float weight = max(place.w, 1.0e-12);
     // What folds hide from each other does not shine out of the square.
     float shining = length(area);
-    lamps.list[at].place = vec4(place.xyz / weight, shining);
-    lamps.list[at].facing = vec4(area / max(shining, 1.0e-12), 0.0);
-    lamps.list[at].light = vec4(light / weight, 0.0);
-    if (at == 0u) {
-        lamps.count = uvec4(squares.count.x * squares.count.y, 0u, 0u, 0u);
-    }
+    lamps.list[3u * at] = vec4(place.xyz / weight, shining);
+    lamps.list[3u * at + 1u] = vec4(area / max(shining, 1.0e-12), float(squares.count.x * squares.count.y));
+    lamps.list[3u * at + 2u] = vec4(light / weight, 0.0);
 }

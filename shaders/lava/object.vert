@@ -17,8 +17,7 @@ layout(location = 2) out float eye_depth_m;
 
 #ifdef SIMULATION_SPH
 layout(set = 0, binding = 2, std430) readonly buffer Lamps {
-    uvec4 count; // in the first component
-    Lamp list[];
+    vec4 list[];
 } lamps;
 
 layout(location = 3) out vec3 to_front;
@@ -34,13 +33,13 @@ void main() {
     eye_depth_m = gl_Position.w;
 #ifdef SIMULATION_SPH
     vec3 outwards = normal / max(length(normal), 1.0e-20);
-    uint count = min(lamps.count.x, MOST_LAMPS);
+    uint count = min(uint(lamps.list[1].w), MOST_LAMPS);
     vec3 front = vec3(0.0);
     vec3 back = vec3(0.0);
     for (uint i = 0u; i < count; i++) {
-        vec4 place = lamps.list[i].place;
-        vec3 direction = lamps.list[i].facing.xyz;
-        vec3 light = lamps.list[i].light.rgb;
+        vec4 place = lamps.list[3u * i];
+        vec3 direction = lamps.list[3u * i + 1u].xyz;
+        vec3 light = lamps.list[3u * i + 2u].rgb;
         front += light_of(place, direction, light, position, outwards);
         back += light_of(place, direction, light, position, -outwards);
     }

@@ -34,19 +34,19 @@ pub fn pahoehoe() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(10.0),
         renewal_s: 6.0,
-        heat: heat(1423.0, 30.0, 20.0, 1000.0),
+        heat: heat(1423.0, 12.0, 20.0, 1000.0),
         vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2 },
         ..Flow::default()
     };
     Parameters {
         space_m: Vec3::new(3.2, 0.5, 1.6),
-        particles: 5000,
+        particles: 4000,
         radius_m: 0.09,
         density: [96, 24, 48],
         splats: [320, 160],
         splat_radius_m: 0.02,
         rock_tile_m: 0.8,
-        ..basalt(Vec3::new(3.1, 1.3, 2.1), Vec3::new(1.3, 0.0, 0.75), 3.0, flow)
+        ..basalt(Vec3::new(2.6, 1.1, 1.9), Vec3::new(1.1, 0.0, 0.75), 3.0, flow)
     }
 }
 
@@ -57,7 +57,7 @@ pub fn ropy() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(14.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 24.0, 6.0, 2500.0),
+        heat: heat(1423.0, 12.0, 6.0, 2500.0),
         ..Flow::default()
     };
     Parameters {
@@ -79,7 +79,7 @@ pub fn toes() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(4.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 30.0, 10.0, 1200.0),
+        heat: heat(1423.0, 12.0, 10.0, 1200.0),
         vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
         ..Flow::default()
     };
@@ -103,7 +103,7 @@ pub fn aa() -> Parameters {
         viscosity_pa_s: 941.0,
         slope_deg: Some(18.0),
         renewal_s: 6.0,
-        heat: heat(1323.0, 12.0, 60.0, 9000.0),
+        heat: heat(1323.0, 6.0, 60.0, 9000.0),
         vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
         ..Flow::default()
     };

@@ -12,9 +12,8 @@ use crate::host_block;
 
 /// Lamps along the longer side, at most.
 const LAMPS: u32 = 32;
-/// Bytes of a lamp, and of their number.
+/// Bytes of a lamp.
 const LAMP: u64 = 48;
-const COUNT: u64 = 16;
 
 host_block! {
     struct SquareConstants {
@@ -27,7 +26,7 @@ host_block! {
 pub struct LavaLight {
     pass: Pass,
     constants: SquareConstants,
-    /// Their number, then each with place, area, direction and light.
+    /// Each with place and area, direction and their number, light.
     pub lamps: Arc<Buffer>,
 }
 
@@ -40,7 +39,7 @@ impl LavaLight {
         let (columns, rows) = (scene.normal_height.width(), scene.normal_height.height());
         let side = columns.max(rows).div_ceil(LAMPS);
         let count = [columns.div_ceil(side), rows.div_ceil(side)];
-        let bytes = COUNT + LAMP * u64::from(count[0]) * u64::from(count[1]);
+        let bytes = LAMP * u64::from(count[0]) * u64::from(count[1]);
         let desc = BufferDesc::new(context.name("lamps"), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
         let lamps = Buffer::new(context.device(), desc)?;
         let pass = Pass::compute("lava-light", "9", "lava/lava-light.comp")
