@@ -8,6 +8,7 @@ mod fluid;
 mod frames;
 mod gpu_driven;
 mod heat;
+mod kinds;
 mod light;
 mod march;
 mod objects;
