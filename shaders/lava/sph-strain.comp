@@ -40,9 +40,12 @@ const float FEWEST = 0.1;
 const float FLATTEST = 0.05;
 
 mat3 inverse_of(mat3 moment) {
-    mat3 adjugate = mat3(cross(moment[1], moment[2]), cross(moment[2], moment[0]), cross(moment[0], moment[1]));
-    float determinant = dot(moment[0], adjugate[0]);
-    float mean = (moment[0].x + moment[1].y + moment[2].z) / 3.0;
+    vec3 x = moment[0];
+    vec3 y = moment[1];
+    vec3 z = moment[2];
+    mat3 adjugate = mat3(cross(y, z), cross(z, x), cross(x, y));
+    float determinant = dot(x, cross(y, z));
+    float mean = (x.x + y.y + z.z) / 3.0;
     bool is_there = mean > FEWEST && determinant > FLATTEST * mean * mean * mean;
     return is_there ? adjugate * (1.0 / determinant) : mat3(1.0);
 }
@@ -76,12 +79,14 @@ void main() {
     slopes += outer(velocity, vec3(sides.x - sides.y, 0.0, sides.z - sides.w) + bed * walls.up);
     vec4 moments = sides * q;
     moment += bed * walls.bed_q * outer(walls.up, walls.up);
-    moment[0].x += moments.x + moments.y;
-    moment[2].z += moments.z + moments.w;
+    moment += mat3(vec3(moments.x + moments.y, 0.0, 0.0), vec3(0.0), vec3(0.0, 0.0, moments.z + moments.w));
     slopes = slopes * inverse_of(moment);
     // The rate of strain: its diagonal, and twice what stands beside it.
-    vec3 along = vec3(slopes[0].x, slopes[1].y, slopes[2].z);
-    vec3 across = vec3(slopes[1].x + slopes[0].y, slopes[2].y + slopes[1].z, slopes[0].z + slopes[2].x);
+    vec3 by_x = slopes[0];
+    vec3 by_y = slopes[1];
+    vec3 by_z = slopes[2];
+    vec3 along = vec3(by_x.x, by_y.y, by_z.z);
+    vec3 across = vec3(by_y.x + by_x.y, by_z.y + by_y.z, by_x.z + by_z.x);
     float strain_per_s = sqrt(2.0 * dot(along, along) + dot(across, across)) / flow.support_m;
     change.list[at] = vec4(vec3(0.0), strain_per_s);
 }
