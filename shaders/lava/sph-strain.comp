@@ -47,7 +47,8 @@ mat3 inverse_of(mat3 moment) {
     float determinant = dot(x, cross(y, z));
     float mean = (x.x + y.y + z.z) / 3.0;
     bool is_there = mean > FEWEST && determinant > FLATTEST * mean * mean * mean;
-    return is_there ? adjugate * (1.0 / determinant) : mat3(1.0);
+    vec2 shares = is_there ? vec2(1.0 / determinant, 0.0) : vec2(0.0, 1.0);
+    return adjugate * shares.x + mat3(shares.y);
 }
 
 void main() {
