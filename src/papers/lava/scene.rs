@@ -46,7 +46,7 @@ pub struct Sheet<'a> {
     pub fluid: Option<&'a FluidSheet>,
 }
 
-/// What a fluid's surface has besides.
+/// Temperatures, rock and ground of a fluid's surface.
 #[derive(Clone)]
 pub struct FluidSheet {
     /// Kelvin in red where there is 1 in green, and in blue the share of the rock's first laying.

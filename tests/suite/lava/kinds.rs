@@ -14,7 +14,7 @@ use crate::common::gpu_test;
 
 /// Of a flow after two seconds.
 struct Measured {
-    /// How fast its front went in the last one, metres per second.
+    /// Way of its front in the last one, metres.
     advance: f64,
     /// Volume over covered area, metres.
     thickness: f64,

@@ -40,7 +40,7 @@ fn of_a_column(way: DVec3, [facing, normal]: [DVec3; 2], area: f64) -> f64 {
     seen * area / (std::f64::consts::PI * squared)
 }
 
-/// What the lamps give at some places is what all columns of the surface give that have lava.
+/// At some places the lamps give as much light as all columns of the surface do that have lava.
 #[test]
 fn lamps_shine_as_the_surface_does() {
     gpu_test(|device| {

@@ -39,7 +39,7 @@ fn particles_carry_the_rock_since_it_was_laid() {
     });
 }
 
-/// What comes out of a vent brings rock that has gone nowhere.
+/// Lava that comes out of a vent brings rock that has gone nowhere.
 #[test]
 fn rock_comes_out_of_a_vent_unmoved() {
     gpu_test(|device| {

@@ -1,4 +1,4 @@
-//! What becomes of the surface's relief as it is carried along: of lava that flows it stays, of lava that boils it does not.
+//! Fate of the surface's relief as it is carried along: of lava that flows it stays, of lava that boils it does not.
 
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use crate::papers::lava::{Lava, Variant};
 
 /// The first frame that is looked at without `frame`: after a second of the default step.
 pub const FRAME: u32 = 29;
-/// How much later others are, seconds.
+/// Times of the others after it, seconds.
 const LATER_S: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
 
 /// Surface and particles of a frame.

@@ -18,7 +18,7 @@ pub struct Rock {
     renewal_steps: f64,
 }
 
-/// What a step does to the layings.
+/// A step's change of the layings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layings {
     /// 1 of a laying that goes on, 0 of one that begins.
