@@ -50,7 +50,7 @@ pub fn pahoehoe() -> Parameters {
     }
 }
 
-/// Section 3.2: the same lava under a skin that stiffens, in a hollow that halts it.
+/// Section 3.2: the same lava under a skin that stiffens, halted by a wall.
 pub fn ropy() -> Parameters {
     let flow = Flow {
         block_m: Vec3::new(0.5, 0.2, 0.6),
@@ -72,7 +72,7 @@ pub fn ropy() -> Parameters {
     }
 }
 
-/// Section 3.2: slow lava under a crust, which breaks out in small bulbs along the front.
+/// Section 3.2: the same lava, slow, under a crust.
 pub fn toes() -> Parameters {
     let flow = Flow {
         block_m: Vec3::new(0.5, 0.2, 0.8),
@@ -96,7 +96,7 @@ pub fn toes() -> Parameters {
     }
 }
 
-/// Section 3.3: 1,050 degrees Celsius, more viscous, metres thick and yet faster; its cold top breaks into rough blocks.
+/// Section 3.3: 1,050 degrees Celsius, more viscous, metres thick and yet faster.
 pub fn aa() -> Parameters {
     let flow = Flow {
         block_m: Vec3::new(3.0, 1.5, 2.0),

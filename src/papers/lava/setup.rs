@@ -284,16 +284,12 @@ impl Study for Setup {
             kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
                 Setup::of(kinds::pahoehoe())
             }),
-            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, in a hollow that halts it", || {
-                Setup::of(kinds::ropy())
-            }),
-            kind("toes", "Section 3.2: slow pahoehoe on uneven land, which breaks out along its front", || Setup {
+            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, halted by a wall", || Setup::of(kinds::ropy())),
+            kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
                 bed: Some(HeightMapSource::Jacksboro),
                 ..Setup::of(kinds::toes())
             }),
-            kind("aa", "Section 3.3: thicker, more viscous and faster, with a rough cold top", || {
-                Setup::of(kinds::aa())
-            }),
+            kind("aa", "Section 3.3: thicker, more viscous and yet faster", || Setup::of(kinds::aa())),
         ]
     }
 
