@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_PI_4, PI, TAU};
 use std::slice::from_ref;
 
+use fumarole::image::compare;
 use fumarole::papers::caustics::reference::{Photons, Tracer, correlation, flat_water_point_intensity};
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::{Light, Mesh, shapes};
@@ -174,8 +175,12 @@ fn straight_light_finds_nothing_hidden() {
         let plain = Parameters { waves: FLAT, ..parameters(OVERHEAD) };
         let layered = Parameters { layers: 4, ..plain.clone() };
         let [one, several] = [&plain, &layered].map(|p| Drawing::of(device, Variant::Hit, p, &[jar()]));
-        assert_eq!(one.picture, several.picture);
-        assert_eq!(one.target("caustics-map"), several.target("caustics-map"));
+        // Rays are followed farther down, which changes the last digits.
+        let difference = compare(&one.picture, &several.picture, None).unwrap();
+        assert!(difference.max < 1.0 && difference.mean < 1e-3, "{difference:?}");
+        let maps = one.target("caustics-map").iter().zip(several.target("caustics-map"));
+        let apart = maps.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 1e-3, "{apart}");
         assert!(several.target("hidden-caustics-map").iter().all(|&light| light == 0.0));
         let heights = several.target("hidden-position-map");
         let held: Vec<usize> =
