@@ -263,29 +263,29 @@ fn hill(parameters: &Parameters) -> Surface {
     Surface { space, columns, rows, heights, normals }
 }
 
-/// Pixels of a picture 200 wide that nothing is drawn on, with drawn ones within 4 pixels on all four sides: gaps, where the outline
-/// of the sheet has no bays so narrow.
-fn enclosed(is_drawn: &[bool]) -> usize {
-    let rows = is_drawn.len() / 200;
-    let at = |x: usize, y: usize| is_drawn[y * 200 + x];
-    let is_gap = |x: usize, y: usize| {
-        !at(x, y)
-            && (x.saturating_sub(4)..x).any(|x| at(x, y))
-            && (x + 1..(x + 5).min(200)).any(|x| at(x, y))
-            && (y.saturating_sub(4)..y).any(|y| at(x, y))
-            && (y + 1..(y + 5).min(rows)).any(|y| at(x, y))
+/// Pixels at which a ray meets the sheet well inside its outline and a picture of splats shows what lies farther, or nothing: metres from
+/// the eye, row by row, 200 a row.
+fn gaps(rays: &[f64], splats: &[f64]) -> usize {
+    let rows = rays.len() as i64 / 200;
+    let is_inside = |at: usize| {
+        let (x, y) = (at as i64 % 200, at as i64 / 200);
+        let mut around = (-2..=2).flat_map(|down| (-2..=2).map(move |across| (x + across, y + down)));
+        around.all(|(x, y)| {
+            (0..200).contains(&x) && (0..rows).contains(&y) && (rays[(y * 200 + x) as usize] - rays[at]).abs() < 0.15
+        })
     };
-    (0..rows).map(|y| (0..200).filter(|x| is_gap(*x, y)).count()).sum()
+    (0..rays.len()).filter(|&at| splats[at] > rays[at] + 0.08 && is_inside(at)).count()
 }
 
 /// From all sides and heights.
 #[test]
 fn fitted_splats_leave_no_gap_from_any_side() {
     gpu_test(|device| {
-        let of = |camera: Camera, shape: SplatShape| {
+        let of = |camera: Camera, shape: SplatShape, draw: SurfaceDraw| {
             let parameters = Parameters {
                 shading: Shading::Heights,
                 splat_shape: shape,
+                surface_draw: Some(draw),
                 // A radius of 0.8 distances: the least that covers a plain is 0.71.
                 splats: [50, 30],
                 splat_radius_m: 0.032,
@@ -295,22 +295,21 @@ fn fitted_splats_leave_no_gap_from_any_side() {
                 ..parameters()
             };
             let stage = stage(device, &parameters, &hill(&parameters), Rock::built_in());
-            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
-            sums.iter().map(|sum| sum[3] > 0.0).collect::<Vec<bool>>()
+            let range_m = f64::from(depth_range_m(&parameters));
+            texels::<f32>(device, &stage.depth).iter().map(|depth| range_m * f64::from(*depth)).collect::<Vec<f64>>()
         };
-        let (mut gaps, mut gaps_of_discs) = (0, 0);
+        let (mut of_fitted, mut of_discs) = (0, 0);
         for turn in 0..6 {
             for up in [0.9f32, 1.6, 2.8] {
                 let (sine, cosine) = (f64::from(turn) * std::f64::consts::TAU / 6.0).sin_cos();
                 let eye = Vec3::new(1.0 + 2.4 * cosine as f32, up, 0.6 + 2.4 * sine as f32);
                 let camera = Camera { eye, target: Vec3::new(1.0, 0.3, 0.6), ..low_camera() };
-                let fitted = of(camera, SplatShape::Fitted);
-                let discs = of(camera, SplatShape::Disc);
-                gaps += enclosed(&fitted);
-                gaps_of_discs += enclosed(&discs);
+                let rays = of(camera, SplatShape::Disc, SurfaceDraw::March);
+                of_fitted += gaps(&rays, &of(camera, SplatShape::Fitted, SurfaceDraw::Splats));
+                of_discs += gaps(&rays, &of(camera, SplatShape::Disc, SurfaceDraw::Splats));
             }
         }
-        println!("gaps: {gaps} pixels, of discs {gaps_of_discs}");
-        assert!(gaps == 0 && gaps_of_discs > 20, "{gaps} {gaps_of_discs}");
+        println!("gaps: {of_fitted} pixels, of discs {of_discs}");
+        assert!(of_fitted == 0 && of_discs > 20, "{of_fitted} {of_discs}");
     });
 }
