@@ -44,6 +44,7 @@ layout(set = 0, binding = 0, std140) uniform Terrain {
     vec2 base_squares; // the base as such a quadric
     vec2 base_linear;
     float node_normals_below; // nodes that a pixel covers, below which normals are those between the nodes'
+    int marks_tiles; // the tiles that are read are marked
 } terrain;
 
 #include "terrain/kinds.glsl"

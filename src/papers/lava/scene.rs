@@ -8,7 +8,6 @@ use super::blackbody;
 use super::parameters::Parameters;
 use super::rock::Rock;
 use super::sph::parameters::Simulation;
-use super::splats::SplatShape;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::update;
@@ -33,7 +32,7 @@ host_block! {
         per_brightest: f32,
         is_blackbody: f32,
         bare_m: f32,
-        fitted: f32,
+        _pad: f32,
     }
 }
 
@@ -42,19 +41,8 @@ host_block! {
 pub struct Sheet<'a> {
     /// Normals in RGB, heights in metres in alpha.
     pub normal_height: &'a Arc<ImageView>,
-    /// `None` of free particles, whose temperature follows from the height over a level floor.
-    pub fluid: Option<&'a FluidSheet>,
-}
-
-/// Temperatures, rock and ground of a fluid's surface.
-#[derive(Clone)]
-pub struct FluidSheet {
-    /// Kelvin in red where there is 1 in green, and in blue the share of the rock's first laying.
-    pub temperatures: Arc<ImageView>,
-    /// Metres along x and z that the rock of either laying has been carried.
-    pub carried: Arc<ImageView>,
-    /// Slopes of the ground along x and z, and its height in metres.
-    pub bed: Arc<ImageView>,
+    /// Kelvin in red where there is 1 in green; `None` where the temperature follows from the height.
+    pub temperatures: Option<&'a Arc<ImageView>>,
 }
 
 /// The scene on the device.
@@ -67,8 +55,8 @@ pub struct Scene {
     pub rock: Arc<ImageView>,
     /// Light of black bodies by temperature.
     pub emission: Arc<Buffer>,
-    /// `None` of free particles.
-    pub fluid: Option<FluidSheet>,
+    /// Kelvin in red where there is 1 in green, over the whole space; `None` where the temperature follows from the height.
+    pub temperatures: Option<Arc<ImageView>>,
     /// The sampler of the rock.
     pub linear: Arc<Sampler>,
 }
@@ -77,32 +65,23 @@ impl Scene {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, sheet: Sheet<'_>, rock: &Rock) -> Result<Self, Error> {
-        let Sheet { normal_height, fluid } = sheet;
+        let Sheet { normal_height, temperatures } = sheet;
         let block = block(context.parameters, normal_height, rock);
         Ok(Scene {
             normal_height: normal_height.clone(),
             block: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
             rock: rock.load(context)?,
             emission: blackbody::load(context)?,
-            fluid: fluid.cloned(),
+            temperatures: temperatures.cloned(),
             linear: Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?,
         })
     }
 
-    /// The pass of the shader of that stem that knows where there is lava.
-    pub(super) fn bounded(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
-        match &self.fluid {
-            None => pass(&format!("{stem}-free.frag")),
-            Some(fluid) => pass(&format!("{stem}-sph.frag")).with("bed", &fluid.bed),
-        }
-    }
-
-    /// The same of a shader that colours the lava by its temperatures.
+    /// The shader of that stem that colours by these temperatures, and its pass with them.
     pub(super) fn hot(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
-        let pass = self.bounded(pass, stem);
-        match &self.fluid {
-            None => pass,
-            Some(fluid) => pass.with("temperatures", &fluid.temperatures).with("carried", &fluid.carried),
+        match &self.temperatures {
+            None => pass(&format!("{stem}-height.frag")),
+            Some(temperatures) => pass(&format!("{stem}-carried.frag")).with("temperatures", temperatures),
         }
     }
 
@@ -155,6 +134,6 @@ fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
         per_brightest,
         is_blackbody: f32::from(u8::from(parameters.is_blackbody)),
         bare_m: bare_m(parameters),
-        fitted: f32::from(u8::from(parameters.splat_shape == SplatShape::Fitted)),
+        _pad: 0.0,
     }
 }

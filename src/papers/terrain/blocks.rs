@@ -100,6 +100,8 @@ host_block! {
         pub base_linear: Vec2,
         /// Nodes that a pixel covers, below which normals are those between the nodes'.
         pub node_normals_below: f32,
+        /// The tiles that are read are marked.
+        pub marks_tiles: i32,
     }
 }
 

@@ -94,7 +94,7 @@ use self::stage::{Build, PixelPass, Stage, Traversal};
 pub use self::tiles::TileCounts;
 use self::tiles::Tiles;
 use crate::gpu::transfer::read_image;
-use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::gpu::{Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 use crate::scene::{Camera, HeightMap, Suspect};
@@ -268,11 +268,24 @@ impl Terrain {
         maps.filter_map(|map| map.levels.tiles.as_ref()).map(Tiles::counts).reduce(TileCounts::and)
     }
 
-    /// Copies to the device what the frames since the last time asked for; true where that was nothing.
-    fn exchange_tiles(&mut self) -> Result<bool, Error> {
+    /// Draws once more to learn which tiles that reads, and copies to the device what it lacks of them; true where that is
+    /// nothing.
+    fn exchange_tiles(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        if self.tiles().is_none() {
+            return Ok(true);
+        }
+        self.set_marking(true);
+        let drawn =
+            Recorder::new(shaders.device())?.run(Mode::Plain, |frame| self.record_passes(frame, false)).map(drop);
+        self.set_marking(false);
+        drawn?;
         let maps = self.device_scene.iter_mut().flat_map(|scene| &mut scene.maps);
         let tiles = maps.filter_map(|map| map.levels.tiles.as_mut());
         tiles.map(Tiles::exchange).try_fold(true, |all, one| Ok(all & one?))
+    }
+
+    fn set_marking(&mut self, marks_tiles: bool) {
+        self.device_scene.iter_mut().for_each(|scene| scene.marks_tiles = marks_tiles);
     }
 
     fn record_passes(&mut self, frame: &mut Frame<'_>, shows: bool) -> Result<(), Error> {
@@ -392,7 +405,7 @@ impl Paper for Terrain {
 
     /// Brings the tiles that the frames lacked, and fails where the driver left a ray before its end.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
-        if !self.exchange_tiles()? {
+        if !self.exchange_tiles(shaders)? {
             return Ok(false);
         }
         let device = shaders.device();

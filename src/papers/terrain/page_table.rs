@@ -11,12 +11,6 @@ use super::pyramid::{Bound, Shape};
 const TILE_BITS: u32 = 7;
 /// Columns and rows of a tile.
 pub const TILE: u32 = 1 << TILE_BITS;
-/// Numbers before the pages: of each level the first page of the highest values, the data first, and from [`LOWEST`] on that of
-/// the lowest; at [`COLUMN_BITS`] the binary logarithm of the tiles in a row of the pool.
-pub const HEAD: usize = 64;
-const LOWEST: usize = 32;
-const COLUMN_BITS: usize = 31;
-
 /// A tile, by what it is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tile {
@@ -45,6 +39,11 @@ impl Grid {
     fn count(&self) -> usize {
         self.columns as usize * self.rows as usize
     }
+
+    /// Column and row of a tile by its number in the grid.
+    fn tile_at(&self, index: usize) -> (u32, u32) {
+        (index as u32 % self.columns, index as u32 / self.columns)
+    }
 }
 
 /// A tile that is to be copied to a place of the pool, both by their numbers.
@@ -60,6 +59,8 @@ pub struct Load {
 #[derive(Debug, Clone)]
 pub struct PageTable {
     grids: Vec<Grid>,
+    /// Levels above the data.
+    top: u32,
     column_bits: u32,
     /// Of each tile the place that holds it.
     places: Vec<Option<usize>>,
@@ -103,6 +104,7 @@ impl PageTable {
         let places = rows << column_bits;
         PageTable {
             grids,
+            top: shape.top,
             column_bits,
             places: vec![None; count],
             tiles: vec![None; places],
@@ -178,33 +180,60 @@ impl PageTable {
         loads
     }
 
-    /// The head and the pages as `shaders/terrain/tiles.glsl` reads them.
+    /// The tiles whose marks are set, in the order of their numbers.
+    pub fn marked(&self, marks: &[u32]) -> Vec<usize> {
+        let tiles = self.grids.iter().flat_map(|grid| {
+            (0..grid.count()).map(move |index| (grid.first + index, self.page(grid, grid.tile_at(index))))
+        });
+        tiles.filter(|(_, page)| marks.get(*page).is_some_and(|mark| *mark != 0)).map(|(tile, _)| tile).collect()
+    }
+
+    /// The pages as `shaders/terrain/tiles.glsl` reads them.
     pub fn pages(&self) -> Vec<u32> {
-        let mut pages = vec![0_u32; HEAD + self.places.len()];
-        pages[COLUMN_BITS] = self.column_bits;
+        let lowest = self.grids.iter().any(|grid| grid.bound == Bound::Lowest);
+        let mut pages = vec![0_u32; self.bound_pages() * if lowest { 2 } else { 1 }];
         for grid in &self.grids {
-            let first = (HEAD + grid.first) as u32;
-            let shift = grid.shift as usize;
-            match grid.bound {
-                Bound::Highest => pages[shift] = first,
-                Bound::Lowest => pages[LOWEST + shift] = first,
-            }
             for index in 0..grid.count() {
+                let (x, y) = grid.tile_at(index);
                 let page = match (self.places[grid.first + index], grid.coarser.map(|coarser| &self.grids[coarser])) {
-                    (Some(place), _) => place as u32,
+                    (Some(place), _) => {
+                        let (column, row) = self.origin(place);
+                        column >> TILE_BITS | row >> TILE_BITS << 12
+                    }
                     // Before the first exchange nothing is held.
                     (None, None) => 0,
-                    (None, Some(coarser)) => {
-                        let (x, y) = (index as u32 % grid.columns / 2, index as u32 / grid.columns / 2);
-                        // A level further up from here.
-                        pages[HEAD + coarser.first + (y * coarser.columns + x) as usize] + (1 << 24)
-                    }
+                    // A level further up from here.
+                    (None, Some(coarser)) => pages[self.page(coarser, (x / 2, y / 2))] + (1 << 24),
                 };
-                pages[HEAD + grid.first + index] = page;
+                pages[self.page(grid, (x, y))] = page;
             }
         }
-        pages[LOWEST] = pages[0];
         pages
+    }
+
+    /// The place of a tile among the pages: of each level they are a square, as if the map were one of 2^n x 2^n texels.
+    fn page(&self, grid: &Grid, (x, y): (u32, u32)) -> usize {
+        let finer = grid.shift.min(self.page_bits());
+        let first = self.first_page(grid.shift) + if grid.bound == Bound::Lowest { self.bound_pages() } else { 0 };
+        first + ((y as usize) << (self.page_bits() - finer)) + x as usize
+    }
+
+    /// The binary logarithm of the tiles a side of the data of such a map.
+    fn page_bits(&self) -> u32 {
+        self.top.saturating_sub(TILE_BITS)
+    }
+
+    /// The first page of a level: the finer ones come before it.
+    fn first_page(&self, shift: u32) -> usize {
+        let squares = 4_usize << (2 * self.page_bits());
+        let finer = shift.min(self.page_bits());
+        // A geometric series, and then levels of one tile.
+        (squares - (squares >> (2 * finer))) / 3 + (shift - finer) as usize
+    }
+
+    /// Pages of the highest values, or of the lowest, of all levels.
+    fn bound_pages(&self) -> usize {
+        self.first_page(self.top) + 1
     }
 }
 
@@ -217,11 +246,14 @@ mod tests {
     const SHAPE: Shape = Shape { width: 700, height: 391, top: 10 };
 
     /// The page of a texel, as the shader finds it: the place that answers, and the levels up to it.
-    fn answer(pages: &[u32], (bound, shift): (Bound, u32), (x, y): (u32, u32)) -> (usize, u32) {
-        let head = if bound == Bound::Lowest { LOWEST } else { 0 };
-        let columns = (((SHAPE.width - 1) >> shift) >> TILE_BITS) + 1;
-        let page = pages[head + shift as usize] + (y >> TILE_BITS) * columns + (x >> TILE_BITS);
-        (pages[page as usize] as usize & 0xff_ffff, pages[page as usize] >> 24)
+    fn answer(table: &PageTable, pages: &[u32], (bound, shift): (Bound, u32), (x, y): (u32, u32)) -> (usize, u32) {
+        let bits = SHAPE.top - TILE_BITS;
+        let first = |shift: u32| (0..shift).map(|finer| 1_usize << (2 * bits.saturating_sub(finer))).sum::<usize>();
+        let lowest = if bound == Bound::Lowest && shift > 0 { first(SHAPE.top + 1) } else { 0 };
+        let columns = 1_usize << bits.saturating_sub(shift);
+        let page = pages[lowest + first(shift) + (y >> TILE_BITS) as usize * columns + (x >> TILE_BITS) as usize];
+        let (column, row) = (page & 0xfff, page >> 12 & 0xfff);
+        ((row as usize * table.pool().0 as usize) + column as usize, page >> 24)
     }
 
     /// Whatever the pool holds, a texel's value is that of its own level or a coarser one over it, and bounds those below it.
@@ -237,8 +269,15 @@ mod tests {
             let asked: Vec<usize> = (0..table.count()).filter(|_| random.unit() < 0.05 * round as f32).collect();
             table.exchange(asked.iter().copied());
             let pages = table.pages();
+            let mut marks = vec![0; pages.len()];
+            for grid in &table.grids {
+                for index in (0..grid.count()).filter(|index| asked.contains(&(grid.first + index))) {
+                    marks[table.page(grid, grid.tile_at(index))] = 1;
+                }
+            }
+            assert_eq!(table.marked(&marks), asked);
             let value = |bound: Bound, shift: u32, (x, y): (u32, u32)| {
-                let (place, up) = answer(&pages, (bound, shift), (x, y));
+                let (place, up) = answer(&table, &pages, (bound, shift), (x, y));
                 let tile = table.tile(table.tiles[place].unwrap());
                 let (x, y, level) = (x >> up, y >> up, shift + up);
                 // The data are their own lowest and highest values; what stands for them is the highest.

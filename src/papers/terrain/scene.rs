@@ -120,6 +120,8 @@ pub struct DeviceScene {
     pub draping: Option<Draping>,
     /// A single texel, of the sky: what is found before the first map.
     pub no_hits: Arc<ImageView>,
+    /// The next frame marks the tiles that it reads.
+    pub marks_tiles: bool,
 }
 
 impl DeviceScene {
@@ -162,14 +164,15 @@ impl DeviceScene {
             bytes.copy_from_slice(bytemuck::bytes_of(&texel));
         })?;
         let light = block_buffer::<LightBlock>(device, &format!("{label}/light"))?;
-        Ok(DeviceScene { maps, light, drape, draping, no_hits })
+        Ok(DeviceScene { maps, light, drape, draping, no_hits, marks_tiles: false })
     }
 
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn write(&self, view: &SceneView) -> Result<(), Error> {
         for (map, terrain) in self.maps.iter().zip(&view.terrains) {
-            map.terrain.write(0, bytemuck::bytes_of(terrain))?;
+            let terrain = TerrainBlock { marks_tiles: self.marks_tiles.into(), ..*terrain };
+            map.terrain.write(0, bytemuck::bytes_of(&terrain))?;
         }
         self.light.write(0, bytemuck::bytes_of(&view.light))
     }

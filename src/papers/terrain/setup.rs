@@ -176,7 +176,8 @@ impl Setup {
 
     /// Triangles of a synthetic volcano that is larger than most devices' images.
     fn promised_cells(&self) -> u64 {
-        let is_large = self.resolution > LARGE_SIDE && self.maps.contains(&HeightMapSource::Volcano);
+        let is_large = (LARGE_SIDE + 1..=*HeightMap::SIDE.end()).contains(&self.resolution)
+            && self.maps.contains(&HeightMapSource::Volcano);
         if is_large { 2 * u64::from(self.resolution).pow(2) } else { 0 }
     }
 

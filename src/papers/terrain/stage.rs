@@ -104,7 +104,7 @@ impl Build<'_> {
         self.image_of(name, vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)
     }
 
-    /// A pass of `program` over all pixels of `target`, which compute stages know by the pass's name.
+    /// A pass of `program` over all pixels of `target`, which compute stages know by the pass's name, be it of objects or not.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -116,7 +116,8 @@ impl Build<'_> {
         resources: &[(&'static str, Resource)],
     ) -> Result<Pass, Error> {
         let pass = match self.stage {
-            Stage::Compute => Pass::compute(name, section, &format!("terrain/{program}.comp")).with(name, target),
+            Stage::Compute => Pass::compute(name, section, &format!("terrain/{program}.comp"))
+                .with(name.strip_prefix("object-").unwrap_or(name), target),
             Stage::Fragment => {
                 Pass::graphics(name, section, "common/fullscreen.vert", &format!("terrain/{program}.frag")).color(
                     target,

@@ -6,7 +6,7 @@ use std::time::Instant;
 use ash::vk;
 
 use super::height_field::{Field, FieldWork, HeightField};
-use super::page_table::{HEAD, PageTable, TILE, Tile};
+use super::page_table::{PageTable, TILE, Tile};
 use super::parameters::Interpolation;
 use super::pyramid::{Cover, Shape, Texel};
 use crate::gpu::bindings::Resource;
@@ -54,7 +54,7 @@ pub struct Tiles {
     /// The pool.
     pub view: Arc<ImageView>,
     pages: Arc<Buffer>,
-    /// A number for each page, 1 where it was read.
+    /// A number for each page, 1 where a drawing that marks has read it.
     asked: Arc<Buffer>,
     staging: Arc<Buffer>,
     field: HeightField,
@@ -114,8 +114,8 @@ impl Tiles {
         [("pool", (&self.view).into()), ("pages", (&self.pages).into()), ("asked", (&self.asked).into())]
     }
 
-    /// Copies to the pool what the frames since the last exchange asked for. True where nothing was left to copy, so that they
-    /// showed all that the pool has room for.
+    /// Copies to the pool what a drawing that marks has read and the pool lacks. True where nothing was left to copy, so that it
+    /// shows all that the pool has room for.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -123,8 +123,7 @@ impl Tiles {
         let start = Instant::now();
         let bytes = read_buffer(self.view.image().device(), &self.asked)?;
         let marks = bytemuck::pod_collect_to_vec::<u8, u32>(&bytes);
-        let asked: Vec<usize> =
-            (0..).zip(&marks[HEAD..]).filter(|(_, mark)| **mark != 0).map(|(tile, _)| tile).collect();
+        let asked = self.table.marked(&marks);
         update(&self.asked, &vec![0; bytes.len()])?;
         let brought = self.bring(&asked)?;
         if brought > 0 {

@@ -66,18 +66,13 @@ impl Painter {
         self.draw()
     }
 
-    /// The picture from a camera, drawn again until the paper has all that it asks for.
-    pub fn settled_from(&mut self, camera: Camera) -> Drawing {
-        loop {
-            let drawing = self.from(camera);
-            if self.paper.settle(&self.shaders).unwrap() {
-                return drawing;
-            }
-        }
-    }
-
     pub fn draw(&mut self) -> Drawing {
-        let Painter { device, paper, recorder, .. } = self;
+        let Painter { device, shaders, paper, recorder } = self;
+        let mut is_whole = paper.tiles().is_none();
+        while !is_whole {
+            recorder.run(Mode::Plain, |frame| paper.record(frame, 0)).unwrap();
+            is_whole = paper.settle(shaders).unwrap();
+        }
         let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, 0)).unwrap();
         let passes = sample.passes.iter().map(|pass| pass.info.name).collect();
         let picture = paper.picture();

@@ -186,7 +186,7 @@ fn objects_stand_in_the_terrain_s_shadow() {
                     "object-occlusion",
                     "objects"
                 ]));
-                let last = if variant == Variant::Cpu { "show" } else { "illumination" };
+                let last = if variant.is_host() { "show" } else { "illumination" };
                 assert!(without.passes.ends_with(&[last, "object-depth", "objects"]), "{:?}", without.passes);
                 let (mut lit, mut dark) = (0, 0);
                 let pictures = [&with, &without].map(|drawing| drawing.picture.pixels().as_chunks::<4>().0);
@@ -281,7 +281,7 @@ fn objects_cast_shadows_where_rays_meet_their_triangles() {
             let (objects, occlusion) =
                 (objects.0.as_chunks::<4>().0.iter().map(|hit| (hit[0], hit[3] > 0.0)), objects.1);
             let mut seen = vec![("object-occlusion", objects.collect::<Vec<_>>(), occlusion)];
-            if variant != Variant::Cpu {
+            if !variant.is_host() {
                 let land = drawing.hits.iter().map(|hit| (hit.depth_m, hit.surface != Surface::Sky));
                 seen.push(("occlusion", land.collect(), &drawing.occlusion));
             }

@@ -62,7 +62,7 @@ fn a_flight_over_tiles_shows_the_whole_map() {
             let mut whole = painter(device, Variant::GpuCompute, &parameters, &maps);
             let mut tiled = painter(device, Variant::TiledCompute, &parameters, &maps);
             for (number, camera) in flight().into_iter().enumerate() {
-                let (expected, drawing) = (whole.from(camera), tiled.settled_from(camera));
+                let (expected, drawing) = (whole.from(camera), tiled.from(camera));
                 let counts = tiled.paper.tiles().unwrap();
                 assert_eq!(counts.missing, 0, "{lod:?}, station {number}: {counts:?}");
                 assert!(counts.held * 4 < counts.tiles, "{counts:?}");
@@ -91,7 +91,7 @@ fn tiles_of_every_kind_show_the_whole_map() {
                     let inputs = Inputs { maps: &maps, ..Inputs::default() };
                     let parameters = Parameters { base, interpolation, ..parameters(Lod::Pixel, 8) };
                     let [expected, drawing] = [Variant::GpuCompute, Variant::TiledCompute]
-                        .map(|variant| Painter::new(device, compiler, variant, &parameters, &inputs).settled_from(eye));
+                        .map(|variant| Painter::new(device, compiler, variant, &parameters, &inputs).from(eye));
                     assert_same(&format!("{base:?} {interpolation:?} {compiler:?}"), &expected, &drawing);
                     assert!(expected.hits.iter().filter(|hit| hit.surface == Surface::Terrain).count() > 1000);
                 }
@@ -111,7 +111,7 @@ fn tiles_without_room_are_drawn_from_the_level_above_and_counted() {
             let whole = painter(device, Variant::GpuCompute, &parameters, &maps).draw();
             let mut tiled = painter(device, Variant::TiledCompute, &parameters, &maps);
             let eye = tiled.paper.camera().unwrap();
-            let drawing = tiled.settled_from(eye);
+            let drawing = tiled.from(eye);
             let counts = tiled.paper.tiles().unwrap();
             assert!(counts.missing > 20 && counts.held <= 32, "{counts:?}");
             let warned = tiled.paper.warnings().join("\n");
@@ -150,7 +150,7 @@ fn maps_longer_than_images_lie_in_tiles() {
         let host = painter(device, Variant::Cpu, &parameters, &maps).draw();
         let mut tiled = painter(device, Variant::TiledCompute, &parameters, &maps);
         let eye = tiled.paper.camera().unwrap();
-        let drawing = tiled.settled_from(eye);
+        let drawing = tiled.from(eye);
         assert_eq!(tiled.paper.tiles().unwrap().missing, 0);
         assert!(drawing.hits.iter().filter(|hit| hit.place[0] > 39_000.0).count() > 2000);
         let others = differing(&host, &drawing);

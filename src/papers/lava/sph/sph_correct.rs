@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from predicted places to corrected ones.
 ///
@@ -12,12 +13,11 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 /// Errors of the Vulkan layer.
 pub fn sph_correct(
     shaders: &ShaderLibrary,
-    ground: Ground<'_>,
+    sort: &Sort,
     [predicted, corrected]: [&Arc<Buffer>; 2],
     factors: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    ground
-        .over_cells("sph-correct", "lava/sph-correct.comp")
+    over_cells("sph-correct", "lava/sph-correct.comp", sort)
         .with("predicted", predicted)
         .with("factors", factors)
         .with("corrected", corrected)

@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass; `factors` takes factor and density, `crowded` a 1 where a loop was cut off.
 ///
@@ -12,12 +13,11 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 /// Errors of the Vulkan layer.
 pub fn sph_density(
     shaders: &ShaderLibrary,
-    ground: Ground<'_>,
+    sort: &Sort,
     predicted: &Arc<Buffer>,
     [factors, crowded]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
-    ground
-        .over_cells("sph-density", "lava/sph-density.comp")
+    over_cells("sph-density", "lava/sph-density.comp", sort)
         .with("predicted", predicted)
         .with("factors", factors)
         .with("crowded", crowded)

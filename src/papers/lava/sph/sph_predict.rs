@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from the last iterate of the velocities to places in metres.
 ///
@@ -11,12 +12,11 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 /// Errors of the Vulkan layer.
 pub fn sph_predict(
     shaders: &ShaderLibrary,
-    ground: Ground<'_>,
+    sort: &Sort,
     velocities: &Arc<Buffer>,
     predicted: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    ground
-        .over_cells("sph-predict", "lava/sph-predict.comp")
+    over_cells("sph-predict", "lava/sph-predict.comp", sort)
         .with("from", velocities)
         .with("predicted", predicted)
         .build(shaders)

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from the velocities that viscosity leaves; `change` takes the rates in its fourth component.
 ///
@@ -11,12 +12,11 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 /// Errors of the Vulkan layer.
 pub fn sph_strain(
     shaders: &ShaderLibrary,
-    ground: Ground<'_>,
+    sort: &Sort,
     velocities: &Arc<Buffer>,
     change: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    ground
-        .over_cells("sph-strain", "lava/sph-strain.comp")
+    over_cells("sph-strain", "lava/sph-strain.comp", sort)
         .with("from", velocities)
         .with("change", change)
         .build(shaders)

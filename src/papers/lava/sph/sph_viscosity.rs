@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::over_cells;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change,
 /// `viscosities` those of the particles over the melt's where they are not all the same.
@@ -12,7 +13,7 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 /// Errors of the Vulkan layer.
 pub fn sph_viscosity(
     shaders: &ShaderLibrary,
-    ground: Ground<'_>,
+    sort: &Sort,
     [from, to]: [&Arc<Buffer>; 2],
     [pushed, change]: [&Arc<Buffer>; 2],
     viscosities: Option<&Arc<Buffer>>,
@@ -21,8 +22,7 @@ pub fn sph_viscosity(
         None => "lava/sph-viscosity-constant.comp",
         Some(_) => "lava/sph-viscosity-basalt.comp",
     };
-    let pass = ground
-        .over_cells("sph-viscosity", shader)
+    let pass = over_cells("sph-viscosity", shader, sort)
         .with("pushed", pushed)
         .with("from", from)
         .with("to", to)

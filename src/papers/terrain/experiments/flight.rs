@@ -21,7 +21,7 @@ use crate::scene::Camera;
 pub const PICTURES: u32 = 60;
 
 /// Columns that the plot shows.
-pub const TIMES: [&str; 2] = ["frame ms", "stall ms"];
+pub const TIMES: [&str; 3] = ["frame ms", "marks ms", "stall ms"];
 
 /// The camera of a picture on the way, `t` from 0 to 1.
 fn between(first: &Camera, last: &EyeAndTarget, t: f32) -> Camera {
@@ -30,7 +30,7 @@ fn between(first: &Camera, last: &EyeAndTarget, t: f32) -> Camera {
 
 /// A row for each of so many pictures, at least two, from the setup's camera straight to another; without one as far north as the
 /// maps reach. A picture is drawn again until it lacks no tile that the pool has room for: what comes before its last drawing, which
-/// is the frame, is a stall.
+/// is the frame, is a stall; a last drawing that marks what it reads tells that it is one.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`].
@@ -54,20 +54,23 @@ pub fn table(
         let camera = between(&first, &last, picture as f32 / (pictures - 1) as f32);
         paper.set_view(View::Camera(camera));
         let (mut stalls, mut stall_ms) = (0, 0.0);
-        let frame_ms = loop {
+        let (frame_ms, marks_ms) = loop {
             let started = Instant::now();
             machine.recorder.run(Mode::Plain, |frame| paper.record(frame, picture))?;
             let frame_ms = started.elapsed().as_secs_f64() * 1e3;
-            if paper.settle(&machine.shaders)? {
-                break frame_ms;
+            let is_settled = paper.settle(&machine.shaders)?;
+            let all_ms = started.elapsed().as_secs_f64() * 1e3;
+            if is_settled {
+                break (frame_ms, all_ms - frame_ms);
             }
             stalls += 1;
-            stall_ms += started.elapsed().as_secs_f64() * 1e3;
+            stall_ms += all_ms;
         };
         let now = paper.tiles().unwrap_or_default();
         rows.push(vec![
             json!(picture),
             json!(frame_ms),
+            json!(marks_ms),
             json!(stalls),
             json!(stall_ms),
             json!(now.loaded - before.loaded),
@@ -79,7 +82,16 @@ pub fn table(
     machine.drawn.add(paper.warnings());
     Ok(ResultTable {
         title: "A flight over tiles: frames, and what they waited for",
-        columns: &["picture", "frame ms", "stalls", "stall ms", "tiles loaded", "tiles held", "tiles missing"],
+        columns: &[
+            "picture",
+            "frame ms",
+            "marks ms",
+            "stalls",
+            "stall ms",
+            "tiles loaded",
+            "tiles held",
+            "tiles missing",
+        ],
         rows,
     })
 }
@@ -88,9 +100,9 @@ pub fn table(
 pub fn summary(table: &ResultTable) -> String {
     let number = |row: &[Value], column: usize| row[column].as_f64().unwrap_or(0.0);
     let rows = || table.rows.iter().map(Vec::as_slice);
-    let stalled = rows().filter(|row| number(row, 2) > 0.0).count();
-    let longest_ms = rows().map(|row| number(row, 3)).fold(0.0, f64::max);
-    let missing = rows().map(|row| number(row, 6)).sum::<f64>();
+    let stalled = rows().filter(|row| number(row, 3) > 0.0).count();
+    let longest_ms = rows().map(|row| number(row, 4)).fold(0.0, f64::max);
+    let missing = rows().map(|row| number(row, 7)).sum::<f64>();
     format!(
         "{stalled} of {} pictures waited for tiles, {longest_ms:.1} ms the longest; {missing} tiles were missing",
         table.rows.len()
@@ -104,7 +116,7 @@ mod tests {
     #[test]
     fn a_summary_counts_stalls_and_what_is_missing() {
         let row = |stalls: u32, stall_ms: f64, missing: u32| {
-            vec![json!(0), json!(5.0), json!(stalls), json!(stall_ms), json!(3), json!(9), json!(missing)]
+            vec![json!(0), json!(5.0), json!(6.0), json!(stalls), json!(stall_ms), json!(3), json!(9), json!(missing)]
         };
         let rows = vec![row(2, 7.25, 0), row(0, 0.0, 0), row(1, 3.0, 4)];
         let said = summary(&ResultTable { title: "", columns: &[], rows });

@@ -38,6 +38,15 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMa
     let (no_data, placement) = (tags.no_data()?, tags.placement(width, height)?);
     let source = Source { width, height, no_data, placement };
     let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
+    if raw_bytes > MAX_BYTES as u64 {
+        let reason = format!(
+            "its samples take {} MiB, and {} are read at most; write fewer with gdal_translate -outsize 50% 50%, or parts and a \
+             mosaic of them with gdalbuildvrt",
+            raw_bytes >> 20,
+            MAX_BYTES >> 20
+        );
+        return Err(fault("ImageWidth, ImageLength, BitsPerSample", reason));
+    }
     if raw_bytes > spare_bytes(size_bytes) {
         check_chunks(&mut decoder, size_bytes, bits)?;
     }

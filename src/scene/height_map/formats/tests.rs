@@ -308,6 +308,35 @@ fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
     assert!(tagged(42_112, metadata).unwrap_err().to_string().contains("gdal_translate -unscale"));
 }
 
+#[test]
+fn a_geotiff_of_too_many_samples_is_refused_with_the_way_out() {
+    let side = 40_000;
+    // Tag, type (16 or 32 bits) and number: width, height, bits, no compression, black is zero, one strip of all rows.
+    let entries: [(u16, u16, u32); 9] = [
+        (256, 4, side),
+        (257, 4, side),
+        (258, 3, 16),
+        (259, 3, 1),
+        (262, 3, 1),
+        (273, 4, 200),
+        (277, 3, 1),
+        (278, 4, side),
+        (279, 4, 2 * side * side),
+    ];
+    let mut bytes = [&b"II*\0"[..], &8_u32.to_le_bytes(), &(entries.len() as u16).to_le_bytes()].concat();
+    for (tag, kind, number) in entries {
+        bytes.extend(
+            [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &1_u32.to_le_bytes(), &number.to_le_bytes()].concat(),
+        );
+    }
+    bytes.extend([0; 4]);
+    let fault = geotiff::parse(2 * u64::from(side).pow(2) + 200, Cursor::new(bytes)).unwrap_err().to_string();
+    assert!(
+        fault.contains("its samples take 3051 MiB, and 2048 are read at most") && fault.contains("gdalbuildvrt"),
+        "{fault}"
+    );
+}
+
 /// Reads bytes as the file of an ending.
 fn parse(ending: &str, bytes: Vec<u8>) -> Result<HeightMap, Fault> {
     let size_bytes = bytes.len() as u64;

@@ -1,5 +1,0 @@
-// Triangles are drawn in their own order.
-
-uint drawn_triangle(uint place) {
-    return place;
-}
