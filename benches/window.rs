@@ -49,7 +49,7 @@ const MOST_GROWN_KB: i64 = 2 << 10;
 const LIGHT: &str = "caustics --size 600x375";
 /// As [`LIGHT`], of a picture that is made to fit.
 const LARGE: &str = "caustics --size 800x500";
-/// What the pages show of each paper, texel by pixel, and how many passes on lies the one that is looked at.
+/// Pictures of the pages, one of each paper, texel by pixel, and how many passes on lies the one that is looked at.
 const PICTURES: [(&str, &str, usize); 5] = [
     ("lava", "--size 600x400 --particles 2000", 4),
     ("gas", "--size 600x400", 4),

@@ -185,7 +185,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// What the layer wrote.
+    /// The report as the layer wrote it.
     fn of(text: &str) -> Self {
         let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
         let fields = |name: &str| -> Vec<String> {
