@@ -1,4 +1,4 @@
-//! Contents of a window: those of the frame that it begins with, of another paper, and of a target: numbers at the pointer, range,
+//! Contents of a window: the frame that it begins with, another paper, and a target: numbers at the pointer, range,
 //! exposure and histogram, each as it stands on the screen.
 
 use std::path::PathBuf;
