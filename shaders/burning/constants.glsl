@@ -37,7 +37,8 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     vec3 wind; // diagonals a second
     float evaporation_per_tick; // of the height of a puddle
     float embers; // 1 where char glows while it burns, else 0
-    float setting_per_tick; // share of its motion that wax loses once it has burnt out
+    float setting_per_tick; // share of its motion that wax loses once the fire has ended
+    float last_radius; // of the boundary when the last vertex has burnt out
 } constants;
 
 // Areas of the heat boundary, from the outside in (3.3, 4.3).

@@ -8,7 +8,6 @@ layout(local_size_x = 128) in;
 #include "burning/constants.glsl"
 #include "burning/chunks.glsl"
 #include "burning/clock.glsl"
-#include "burning/flammability.glsl"
 #include "burning/grid.glsl"
 #include "burning/meltability.glsl"
 #include "burning/vertices.glsl"
@@ -198,10 +197,9 @@ float fall_of(uint vertex) {
     return constants.gravity_per_tick * epsilons / float(max(2u * (to - from), 1u));
 }
 
-// Share of its motion that a vertex has left: wax sets once it has burnt out (ours; in the text it folds for ever).
-float warmth(uint vertex) {
-    float behind = clock.radius - rest[vertex].boundary_distance - 2.0 * constants.area_width;
-    float cold_ticks = behind / constants.growth_per_tick - flammability_of(vertex);
+// Share of its motion that wax has left: it sets once the fire has ended (ours; in the text it folds for ever).
+float warmth() {
+    float cold_ticks = (clock.radius - constants.last_radius) / constants.growth_per_tick;
     return clamp(1.0 - constants.setting_per_tick * cold_ticks, 0.0, 1.0);
 }
 
@@ -223,7 +221,7 @@ void main() {
         return;
     }
     vec3 flow = flows[vertex].xyz;
-    float warm = warmth(vertex);
+    float warm = warmth();
     vec3 follow = warm * following() * (guided(rest[vertex].position) - flow);
     flows[vertex] = vec4(flow + follow, 0.0);
     vec3 position = before.position + follow + warm * folding(vertex, before.position);

@@ -72,14 +72,14 @@ layout(set = 0, binding = 82, std430) readonly buffer SubstanceOf {
 
 const vec3 CHAR = vec3(0.02);
 
-const float PATCHES = 22.0; // a diagonal
-const float WANDER = 17.0; // patches of it a minute
+const float PATCHES = 40.0; // a diagonal
+const float WANDER = 30.0; // patches of it a minute
 
 // Of char that burns: the less, the less of it is left.
 float ember(vec3 place, float left_fraction) {
     float time_s = float(clock.tick) / 60.0;
-    float patched = smoothstep(0.35, 0.7, wood_noise(PATCHES * place - vec3(0.0, WANDER / 60.0 * time_s, 0.0)));
-    return patched * left_fraction;
+    float patched = smoothstep(0.45, 0.85, wood_noise(PATCHES * place - vec3(0.0, WANDER / 60.0 * time_s, 0.0)));
+    return 0.7 * patched * left_fraction;
 }
 
 // The sum of (b - a) x (c - a) over the triangles that are still there, or over all of them.

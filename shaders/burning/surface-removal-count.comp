@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants ORDER=own,cached
+
 // First phase of the compaction: how many triangles of each run are drawn.
 
 layout(local_size_x = 64) in;
@@ -7,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/runs.glsl"
+#include "burning/order-{ORDER}.glsl"
 
 layout(set = 0, binding = 13, std430) readonly buffer Removed {
     uint removed[];
@@ -23,9 +26,9 @@ void main() {
     }
     uint sum = 0u;
     for (uint i = 0u; i < RUN; i++) {
-        uint triangle = run * RUN + i;
-        if (triangle < constants.triangle_count) {
-            sum += 1u - removed[triangle];
+        uint place = run * RUN + i;
+        if (place < constants.triangle_count) {
+            sum += 1u - removed[drawn_triangle(place)];
         }
     }
     group_sums[run] = sum;

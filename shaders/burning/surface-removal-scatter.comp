@@ -1,12 +1,15 @@
 #version 450
 
-// Third phase: each drawn triangle's corners to their offset in the stream, in their old order.
+#pragma variants ORDER=own,cached
+
+// Third phase: each drawn triangle's corners to their offset in the stream, in their order.
 
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/runs.glsl"
+#include "burning/order-{ORDER}.glsl"
 
 layout(set = 0, binding = 5, std430) readonly buffer Corners {
     uint corners[];
@@ -31,12 +34,15 @@ void main() {
     }
     uint at = group_sums[run];
     for (uint i = 0u; i < RUN; i++) {
-        uint triangle = run * RUN + i;
-        if (triangle < constants.triangle_count && removed[triangle] == 0u) {
-            for (uint corner = 0u; corner < 3u; corner++) {
-                stream[3u * at + corner] = corners[3u * triangle + corner];
+        uint place = run * RUN + i;
+        if (place < constants.triangle_count) {
+            uint triangle = drawn_triangle(place);
+            if (removed[triangle] == 0u) {
+                for (uint corner = 0u; corner < 3u; corner++) {
+                    stream[3u * at + corner] = corners[3u * triangle + corner];
+                }
+                at++;
             }
-            at++;
         }
     }
 }

@@ -62,6 +62,12 @@ impl Parameters {
         self.look == Look::Natural && self.shading == Shading::Lit
     }
 
+    /// True where triangles are drawn in the order that vertex caches like best: by the natural look, of objects that are
+    /// not refined. Of triangles at one depth another is seen then than in the mesh's own order.
+    pub fn orders_triangles(&self, is_refined: bool) -> bool {
+        self.look == Look::Natural && !is_refined
+    }
+
     /// True where the ground is drawn.
     pub fn has_ground(&self) -> bool {
         self.has_linear_light() && self.ground

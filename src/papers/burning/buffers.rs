@@ -53,7 +53,8 @@ host_block! {
         evaporation_per_tick: f32,
         embers: f32,
         setting_per_tick: f32,
-        _pad: [f32; 2],
+        last_radius: f32,
+        _pad: f32,
     }
 }
 
@@ -422,8 +423,19 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         evaporation_per_tick: (f64::from(p.evaporation_per_s) * tick_s) as f32,
         embers: if is_natural && (p.chars(variant) || p.materials.is_some()) { 1.0 } else { 0.0 },
         setting_per_tick: if is_natural { (tick_s / f64::from(p.setting_s)) as f32 } else { 0.0 },
-        _pad: [0.0; 2],
+        last_radius: last_radius(variant, p, model),
+        _pad: 0.0,
     }
+}
+
+/// Radius of the boundary when the last vertex has burnt out, if it never halts.
+fn last_radius(variant: Variant, parameters: &Parameters, model: &Model) -> f32 {
+    let farthest = model.rest.iter().map(|vertex| vertex.boundary_distance).fold(0.0, f32::max);
+    let own = [parameters.flammability];
+    let substances = parameters.materials.as_ref().map_or(Vec::new(), |m| m.all(variant, parameters));
+    let longest = substances.iter().map(|substance| substance.flammability).chain(own).max().unwrap_or_default();
+    let burning = f64::from(parameters.speed_per_s) * f64::from(longest) / TICKS_PER_S;
+    farthest + 2.0 * parameters.width_of_areas + burning as f32
 }
 
 /// A block rotates by 2 degrees at most (3.5.2: very minute), by 15 where two or more of its sides are free.

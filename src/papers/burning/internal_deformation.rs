@@ -67,7 +67,6 @@ impl InternalDeformation {
         }
         if variant == Variant::Melting {
             vertices = vertices
-                .with("Flammabilities", &buffers.flammabilities)
                 .with("BasePoints", &buffers.base_points)
                 .with("Clock", &buffers.clock)
                 .with("Flows", &buffers.flows);

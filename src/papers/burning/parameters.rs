@@ -127,7 +127,7 @@ pub struct Parameters {
     pub burn_away: bool,
     /// Draws the ground, of the natural look.
     pub ground: bool,
-    /// Time in which wax that has burnt out loses its motion, of the natural look.
+    /// Time after the fire in which wax loses its motion, of the natural look.
     pub setting_s: f32,
     /// Height of the puddle of what melts that evaporates in a second, of the natural look.
     pub evaporation_per_s: f32,
@@ -212,7 +212,7 @@ impl Default for Parameters {
             fire: 3000,
             smoke: 1800,
             particle_radius: 0.02,
-            fire_light: 1.0,
+            fire_light: 4.0,
             fire_scale: 2,
             exposure: 1.0,
             tone: Tone::Shoulder,
@@ -261,7 +261,7 @@ const PRELOAD: &str = "Load what never changes before the first frame, or again 
 const KEEP_CONNECTED: &str =
     "Never leave a block that has weight without neighbours, or let pieces come off; off where parts fall";
 const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
-const SETTING: &str = "melting: wax that has burnt out comes to rest in this time, of the natural look";
+const SETTING: &str = "melting: wax comes to rest in this time after the fire, of the natural look";
 const BURN_AWAY: &str = "solid: let what has burnt out leave as ash, of the natural look, or stay as char";
 const COLLAPSE: &str = "Let parts that nothing holds fall, of the natural look, or leave them in place";
 

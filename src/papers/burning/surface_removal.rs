@@ -5,11 +5,12 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::buffers::Buffers;
-use super::model::Model;
+use super::model::{Model, draw_order};
 use super::parameters::{Parameters, Variant};
 use super::parts::Parts;
 use super::ping_pong::{self, new};
 use super::refinement::Refinement;
+use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 
@@ -80,10 +81,19 @@ impl SurfaceRemoval {
             .with("Clock", &buffers.clock);
         let mark = buffers.triangle_chunks.changing(mark);
         let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
+        let draw_order = parameters.orders_triangles(refinement.is_some()).then(|| {
+            let order = draw_order(model.lattice.finest(), model.draw_vertex_count());
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            upload(shaders.device(), &format!("{label}/draw-order"), usage, bytemuck::cast_slice(&order))
+        });
+        let draw_order = draw_order.transpose()?;
         let over_all = |shader: &str| {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
             match refinement {
-                None => step,
+                None => match &draw_order {
+                    None => step,
+                    Some(order) => step.with("DrawOrder", order),
+                },
                 Some(refinement) => step
                     .constants::<Leaves>()
                     .with("Triangles", &buffers.triangles)
@@ -91,9 +101,12 @@ impl SurfaceRemoval {
                     .with("Alive", &buffers.alive),
             }
         };
-        let [count, write] = match refinement {
-            None => ["burning/surface-removal-count.comp", "burning/surface-removal-scatter.comp"],
-            Some(_) => ["burning/refined-count.comp", "burning/refined-write.comp"],
+        let [count, write] = match (refinement, &draw_order) {
+            (Some(_), _) => ["burning/refined-count.comp", "burning/refined-write.comp"],
+            (None, None) => ["burning/surface-removal-count-own.comp", "burning/surface-removal-scatter-own.comp"],
+            (None, Some(_)) => {
+                ["burning/surface-removal-count-cached.comp", "burning/surface-removal-scatter-cached.comp"]
+            }
         };
         let count = over_all(count).build(shaders)?;
         let scan = step("burning/surface-removal-scan.comp")

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use fumarole::gpu::Device;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::falling::{Body, components, moments};
-use fumarole::papers::burning::{MOST_PARTS, Parameters, Part, SEARCH_TICKS, Variant};
+use fumarole::papers::burning::{Heat, MOST_PARTS, Parameters, Part, SEARCH_TICKS, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{DQuat, DVec3, Mat4, Quat, Vec3};
 
@@ -108,7 +108,9 @@ fn holding(fire: &Fire, state: &State) -> Vec<[usize; 2]> {
 fn parts_are_what_hangs_together() {
     gpu_test(|device| {
         for mesh in meshes() {
-            let mut fire = Fire::new(device, Variant::Shell, &natural(), &mesh);
+            // A sphere of heat parts what a fire along the surface eats up from its end.
+            let parameters = Parameters { heat: Some(Heat::Air), ..natural() };
+            let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh);
             let count = fire.paper.model().rest.len();
             let mut most = 0;
             for _ in 0..40 {

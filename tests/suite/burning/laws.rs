@@ -1,7 +1,7 @@
 //! Laws of every fire, whatever the numbers.
 
 use fumarole::measure::Paper;
-use fumarole::papers::burning::{BlockCounts, Parameters, Variant};
+use fumarole::papers::burning::{BlockCounts, Heat, Look, Parameters, Variant};
 
 use super::fire::{Fire, ball, quick};
 use crate::common::gpu_test;
@@ -100,6 +100,31 @@ fn drawn_and_removed_triangles_are_all_there_are() {
             most_removed = removed;
         }
         assert!(most_removed > total / 4, "{most_removed}");
+    });
+}
+
+#[test]
+fn by_the_natural_look_the_same_triangles_are_drawn_in_the_order_of_caches() {
+    gpu_test(|device| {
+        let parameters = Parameters { look: Look::Natural, heat: Some(Heat::Air), collapse: false, ..quick() };
+        let mut fire = Fire::new(device, Variant::Shell, &parameters, &ball());
+        for number in [0, 80, 140] {
+            fire.frame(number);
+            let state = fire.state();
+            let corners = fire.paper.model().lattice.finest();
+            let left = (0..corners.len()).filter(|triangle| state.removed[*triangle] == 0);
+            let own: Vec<[u32; 3]> = left.map(|triangle| corners[triangle]).collect();
+            let stream: Vec<[u32; 3]> = fire.read(&fire.paper.buffers().stream);
+            let drawn = &stream[..state.counts.drawn_triangles as usize];
+            assert!(drawn != own, "{number}: in an order of its own");
+            let sorted = |triangles: &[[u32; 3]]| {
+                let mut triangles = triangles.to_vec();
+                triangles.sort_unstable();
+                triangles
+            };
+            assert_eq!(sorted(drawn), sorted(&own), "{number}");
+        }
+        assert!(fire.state().counts.removed_triangles > 100);
     });
 }
 

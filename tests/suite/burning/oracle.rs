@@ -301,7 +301,7 @@ fn melting() {
     compare(Variant::Melting, &Parameters { levels: Some(0), ..parameters() }, &bunny());
     // By the natural look it sets.
     let (look, heat) = (Look::Natural, Some(Heat::Air));
-    let sets = Parameters { levels: Some(0), look, heat, setting_s: 0.5, ..parameters() };
+    let sets = Parameters { levels: Some(0), look, heat, setting_s: 2.0, speed_per_s: 0.5, ..parameters() };
     compare(Variant::Melting, &sets, &bunny());
     // Lit in the middle: structures above it turn.
     let sources = vec![Vec3::new(0.0, 0.2, 0.25), Vec3::new(-0.2, 0.1, 0.0)];

@@ -1,7 +1,7 @@
 //! Wax on the ground: what the mesh loses the puddle gains.
 
 use fumarole::papers::burning::model::with_triangles;
-use fumarole::papers::burning::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH, Parameters, Variant};
+use fumarole::papers::burning::{Film, Heat, PUDDLE_CELLS, PUDDLE_HALF_WIDTH, Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource};
 use glam::DVec3;
 
@@ -112,7 +112,9 @@ fn a_rate_evaporates_the_puddle() {
 fn the_text_alone_has_no_puddle_and_the_same_mesh() {
     use super::fire::text;
     gpu_test(|device| {
-        let [mut ours, mut theirs] = [wax(), Parameters { look: text().look, ..wax() }]
+        // Until something has burnt out, and sets.
+        let wax = Parameters { heat: Some(Heat::Air), flammability: 10_000, ..wax() };
+        let [mut ours, mut theirs] = [wax.clone(), Parameters { look: text().look, ..wax }]
             .map(|parameters| Fire::new(device, Variant::Melting, &parameters, &ball()));
         assert!(theirs.paper.puddle().is_none());
         for fire in [&mut ours, &mut theirs] {

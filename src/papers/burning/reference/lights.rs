@@ -40,7 +40,7 @@ fn noise(at: DVec2) -> f64 {
 
 /// The glow of char at a place of the object at rest, of which so much is left, at a time: patches that wander up.
 pub fn ember(place: DVec3, left: f64, time_s: f64) -> f64 {
-    let at = 22.0 * place - DVec3::Y * (17.0 / 60.0) * time_s;
+    let at = 40.0 * place - DVec3::Y * (30.0 / 60.0) * time_s;
     let cell = at.floor();
     let fade = (at - cell).to_array().map(|t| smoothstep(0.0, 1.0, t));
     let corner = |i: i32| {
@@ -51,7 +51,7 @@ pub fn ember(place: DVec3, left: f64, time_s: f64) -> f64 {
         let weight = (0..3).map(|axis| if step[axis] == 1 { fade[axis] } else { 1.0 - fade[axis] }).product::<f64>();
         weight * f64::from((h ^ (h >> 16)) & 0xffff) / 65535.0
     };
-    left * smoothstep(0.35, 0.7, (0..8).map(corner).sum())
+    0.7 * left * smoothstep(0.45, 0.85, (0..8).map(corner).sum())
 }
 
 /// Light of a place of a flame's square, -1 to 1.

@@ -67,10 +67,11 @@ impl Tick<'_> {
         (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
     }
 
-    /// Share of its motion that a vertex has left after so long without fire; ours.
-    fn warmth(&self, state: &State, v: usize) -> f64 {
+    /// Share of its motion that wax has left so long after the last vertex has burnt out; ours.
+    fn warmth(&self, state: &State) -> f64 {
         let Some(setting_s) = self.constants.setting_s else { return 1.0 };
-        let deformed = self.radius(state.growth_ticks) - 2.0 * self.constants.width - self.constants.reaches[v];
+        let last = self.constants.reaches.iter().copied().fold(0.0, f64::max);
+        let deformed = self.radius(state.growth_ticks) - 2.0 * self.constants.width - last;
         let cold_s = deformed / self.constants.speed - f64::from(self.constants.flammability) / RATE;
         (1.0 - cold_s / setting_s).clamp(0.0, 1.0)
     }
@@ -220,9 +221,9 @@ impl Tick<'_> {
         let before = state.clone();
         state.guides = guides.iter().map(|g| g.0).collect();
         let mut margins = vec![f64::INFINITY; before.positions.len()];
+        let warmth = self.warmth(&before);
         for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
             let (target, close) = self.guidance(guides, v);
-            let warmth = self.warmth(&before, v);
             let step = warmth * self.following() * (target - before.flows[v]);
             let (folded, margin) = self.folding(&before, v);
             let folded = warmth * folded;

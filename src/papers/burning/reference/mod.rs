@@ -71,7 +71,7 @@ pub struct Constants {
     pub seed: u32,
     /// Fraction of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
     pub retire_at: f64,
-    /// Seconds in which wax that has burnt out sets, by the natural look.
+    /// Seconds after the fire in which wax sets, by the natural look.
     pub setting_s: Option<f64>,
 }
 
