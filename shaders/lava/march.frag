@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants HEAT=height,carried
+#pragma variants SIMULATION=free,sph
 
 // A ray for each pixel against the height field, in place of splats. It begins where it comes below the highest place, goes
 // from cell to cell, and in a cell to the exact
@@ -10,6 +10,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "lava/scene.glsl"
+#include "lava/ground.glsl"
 
 layout(push_constant, std430) uniform Rays {
     vec2 drift_m; // distance that the rock has moved with the lava, along x and z
@@ -157,7 +158,9 @@ void main() {
     vec3 place_m = shading.eye_m + hit.t * direction;
     vec4 surface = surface_at(columns_at(place_m.xz));
     bool is_wall = dot(hit.side, hit.side) > 0.0;
-    if (!is_wall && surface.w <= scene.bare_m) {
+    // Of a wall only what lies between lava and ground.
+    bool is_ground = is_wall && place_m.y < ground_m(place_m.xz);
+    if (is_ground || is_bare(vec3(place_m.x, surface.w, place_m.z))) {
         discard;
     }
     vec3 normal = is_wall ? hit.side : normalize(surface.xyz);
@@ -168,15 +171,16 @@ void main() {
     vec3 down_m = hit.t * (shading.down - direction * (dot(shading.down, normal) / facing));
     vec2 texels = vec2(length(right_m), length(down_m)) / scene.rock_tile_m * scene.rock_texels;
     vec2 taps = clamp(ceil(texels / TEXELS_A_TAP), 1.0, MOST_TAPS);
+    Rock laid = rock_of(place_m.xz);
     vec3 rock = vec3(0.0);
     for (float y = 0.5; y < taps.y; y++) {
         for (float x = 0.5; x < taps.x; x++) {
             vec3 tap_m = place_m + (x / taps.x - 0.5) * right_m + (y / taps.y - 0.5) * down_m;
             // The rock of a wall goes on from its edge, as if it were folded down.
-            rock += rock_at(tap_m.xz + hit.side.xz * (surface.w - tap_m.y));
+            rock += rock_at(laid, tap_m.xz + hit.side.xz * (surface.w - tap_m.y));
         }
     }
-    vec3 color = color_of(place_m, rock / (taps.x * taps.y));
+    vec3 color = color_of(place_m, normal, rock / (taps.x * taps.y));
     accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color, 1.0);
     gl_FragDepth = (hit.t + scene.epsilon_m) * scene.depth_per_m;
 }

@@ -1,8 +1,10 @@
 #version 450
 
+#pragma variants SIMULATION=free,sph
+
 // Eq. 6.3's quotient and the normals from finite differences of the heights (section 6.4). Near the borders the height
 // sinks to 0 and the normal turns upwards; the differences are those of the heights that have sunk, so that splats lie
-// along the slope that is drawn. Where nothing was accepted the height is 0.
+// along the slope that is drawn. Where nothing was accepted the height is 0; a fluid's sinks to its bed.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,6 +15,18 @@ layout(push_constant, std430) uniform Grid {
     vec2 columns; // grid points along x and z
     float border_m;
 } grid;
+
+#include "lava/bed.glsl"
+
+#ifdef SIMULATION_SPH
+float ground_m(ivec2 column) {
+    return bed_at((vec2(column) + 0.5) / grid.columns).z;
+}
+#else
+float ground_m(ivec2 column) {
+    return 0.0;
+}
+#endif
 
 layout(location = 0) out vec4 normal_height;
 
@@ -26,7 +40,9 @@ float fraction_at(ivec2 column) {
 
 float height_at(ivec2 column) {
     vec4 sums = texelFetch(accumulated_depths, column, 0);
-    return sums.a > 0.0 ? fraction_at(column) * sums.r / sums.a : 0.0;
+    float ground = ground_m(column);
+    float fraction = fraction_at(column);
+    return sums.a > 0.0 ? ground * (1.0 - fraction) + fraction * sums.r / sums.a : ground;
 }
 
 // Height difference per metre along one axis: central, at the sides one-sided.

@@ -4,4 +4,5 @@ layout(push_constant, std430) uniform Object {
     vec3 eye_m;
     float exposure;
     float knee;
+    float paint; // share of light that comes back
 } object;

@@ -1,6 +1,8 @@
 #version 450
 
-// A vertex of a polygon object.
+#pragma variants SIMULATION=free,sph
+
+// A vertex of a polygon object, and the light that comes to it from a fluid.
 
 #include "lava/scene.glsl"
 
@@ -11,9 +13,37 @@ layout(location = 0) out vec3 facing;
 layout(location = 1) out vec3 world_m;
 layout(location = 2) out float eye_depth_m;
 
+#include "lava/lamps.glsl"
+
+#ifdef SIMULATION_SPH
+layout(set = 0, binding = 2, std430) readonly buffer Lamps {
+    vec4 list[];
+} lamps;
+
+layout(location = 3) out vec3 to_front;
+layout(location = 4) out vec3 to_back;
+
+const uint MOST_LAMPS = 1024u;
+#endif
+
 void main() {
     facing = normal;
     world_m = position;
     gl_Position = scene.view_projection * vec4(position, 1.0);
     eye_depth_m = gl_Position.w;
+#ifdef SIMULATION_SPH
+    vec3 outwards = normal / max(length(normal), 1.0e-20);
+    uint count = min(uint(lamps.list[1].w), MOST_LAMPS);
+    vec3 front = vec3(0.0);
+    vec3 back = vec3(0.0);
+    for (uint i = 0u; i < count; i++) {
+        vec4 place = lamps.list[3u * i];
+        vec3 direction = lamps.list[3u * i + 1u].xyz;
+        vec3 light = lamps.list[3u * i + 2u].rgb;
+        front += light_of(place, direction, light, position, outwards);
+        back += light_of(place, direction, light, position, -outwards);
+    }
+    to_front = front;
+    to_back = back;
+#endif
 }

@@ -13,5 +13,6 @@ layout(set = 0, binding = 0, std140) uniform Scene {
     vec2 temperatures_k; // of a black body's colour, at the floor and at the top of the space
     float per_brightest; // 1 / the brightest primary of the hottest
     float is_blackbody; // 1 or 0
-    float bare_m; // a place that is no higher is floor without lava, of which nothing is drawn
+    float bare_m; // a place that is no higher above the ground has no lava, and nothing is drawn of it
+    float fitted; // 1 for splats that cover discs of the map, 0 for discs on the surface
 } scene;

@@ -3,10 +3,14 @@
 // Eq. 12 of position-based fluids (Macklin and Mueller 2013): where the constraints push each particle, and walls. What two
 // particles do to each other is opposite and equal.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
+#include "lava/sph-walls.glsl"
 #include "lava/sph-inside.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {

@@ -3,10 +3,14 @@
 // Eq. 8 to 11 of position-based fluids (Macklin and Mueller 2013): the density at the predicted places over that at rest,
 // walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
+#include "lava/sph-walls.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres

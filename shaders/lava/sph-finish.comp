@@ -1,7 +1,10 @@
 #version 450
 
 // The step's end: velocities from the places, both into the textures at the particles' numbers, with
-// temperatures and rates of strain.
+// temperatures and rates of strain. The way that a particle has gone since the rock was laid on it is added up, for each of two
+// layings that are renewed in turn, as they are stretched ever more (Neyret 2003).
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 64) in;
 
@@ -28,6 +31,14 @@ layout(set = 0, binding = 7, rgba32f) uniform image2D positions;
 
 layout(set = 0, binding = 8, rgba32f) uniform image2D velocities;
 
+layout(set = 0, binding = 11) uniform texture2D carried_before; // metres along x and z, of both layings
+
+layout(set = 0, binding = 12, rgba32f) uniform image2D carried_after;
+
+layout(set = 0, binding = 13, std430) buffer Carried {
+    vec4 list[]; // the same by cells
+} carried;
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
@@ -38,6 +49,10 @@ void main() {
     vec3 place_m = predicted.list[at].xyz;
     vec2 turns = flow.periodic * floor(place_m.xz / flow.space_m.xz);
     vec3 within = vec3(place_m.x - turns.x * flow.space_m.x, place_m.y, place_m.z - turns.y * flow.space_m.z);
+    vec2 way_m = place_m.xz - began_m(at).xz;
+    vec4 carried_m = flow.kept_rock.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
+    carried.list[at] = carried_m;
+    imageStore(carried_after, texel, carried_m);
     imageStore(positions, texel, vec4(within, change.list[at].w));
     imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, heat.list[at].x));
 }

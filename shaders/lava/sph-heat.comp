@@ -5,10 +5,14 @@
 // where the smoothed amount of lava falls off steeply (Mueller et al. 2003); the steepness is the share of its face. The face is
 // half a distance of particles away from the middle, and as hot as what it radiates and what reaches it agree.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
+#include "lava/sph-walls.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second, and kelvin as the step begins
@@ -25,10 +29,12 @@ const float STEEP = 0.6;
 // Gradient of the walls' share, times h, where two walls meet with each the other's part left out: it would be a face of lava.
 vec3 wall_gradient_once(Walls walls) {
     vec4 q = walls.sides_q;
-    float below = 1.0 - beyond(walls.floor_q);
+    float below = 1.0 - beyond(walls.bed_q);
     float along_x = 1.0 - beyond(q.x) - beyond(q.y);
     float along_z = 1.0 - beyond(q.z) - beyond(q.w);
-    return wall_gradient(walls) * vec3(below * along_z, along_x * along_z, below * along_x);
+    vec2 sides = vec2(beyond_slope(q.y) - beyond_slope(q.x), beyond_slope(q.w) - beyond_slope(q.z)) * below;
+    float bed = beyond_slope(walls.bed_q) * along_x * along_z;
+    return vec3(sides.x * along_z, 0.0, sides.y * along_x) - bed * walls.up;
 }
 
 // The root of T_f + radiance (T_f^4 - T_a^4) = T by Newton's method, which comes down to it: the function is convex.

@@ -18,6 +18,7 @@ layout(set = 0, binding = 0) uniform texture2D places;
 layout(set = 0, binding = 1) uniform texture2D motions;
 layout(set = 0, binding = 2, rgba32f) uniform image2D positions;
 layout(set = 0, binding = 3, rgba32f) uniform image2D velocities;
+layout(set = 0, binding = 4, rgba32f) uniform image2D carried;
 
 void main() {
     uint at = element(64u);
@@ -28,4 +29,5 @@ void main() {
     ivec2 texel = ivec2(particle % inflow.width, particle / inflow.width);
     imageStore(positions, texel, texelFetch(places, texel, 0));
     imageStore(velocities, texel, texelFetch(motions, texel, 0));
+    imageStore(carried, texel, vec4(0.0));
 }

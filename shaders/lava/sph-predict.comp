@@ -2,10 +2,13 @@
 
 // Places at the end of the step by the velocities alone.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
 #include "lava/sph-inside.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer From {

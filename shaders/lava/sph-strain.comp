@@ -2,12 +2,17 @@
 
 // The rate of strain at a particle that viscosity leaves: the root of twice the sum of the squares of its components, from the
 // velocities that the equation of viscosity has been solved for. What the pressure adds to them afterwards shakes single
-// particles, and is no flow.
+// particles, and is no flow. Sums over particles are divided by what they are of a speed that grows by the place alone (Bonet and
+// Lok 1999), so that neither disorder nor a free surface changes a linear one's.
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
+#include "lava/sph-walls.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer From {
     vec4 list[]; // metres per second
@@ -25,11 +30,25 @@ float shear_beyond(float q) {
     return squared * squared * u * series / max(q, 1.0e-3);
 }
 
-vec3 wall_shear(Walls walls) {
-    vec4 q = walls.sides_q;
-    float along_x = shear_beyond(q.x) - shear_beyond(q.y);
-    float along_z = shear_beyond(q.z) - shear_beyond(q.w);
-    return vec3(along_x, shear_beyond(walls.floor_q), along_z);
+mat3 outer(vec3 a, vec3 b) {
+    return mat3(a * b.x, a * b.y, a * b.z);
+}
+
+// Particles that have few others around them, or all in a plane, keep their sums as they are: the least mean of the diagonal,
+// and the least determinant over its cube.
+const float FEWEST = 0.1;
+const float FLATTEST = 0.05;
+
+mat3 inverse_of(mat3 moment) {
+    vec3 x = moment[0];
+    vec3 y = moment[1];
+    vec3 z = moment[2];
+    mat3 adjugate = mat3(cross(y, z), cross(z, x), cross(x, y));
+    float determinant = dot(x, cross(y, z));
+    float mean = (x.x + y.y + z.z) / 3.0;
+    bool is_there = mean > FEWEST && determinant > FLATTEST * mean * mean * mean;
+    vec2 shares = is_there ? vec2(1.0 / determinant, 0.0) : vec2(0.0, 1.0);
+    return adjugate * shares.x + mat3(shares.y);
 }
 
 void main() {
@@ -39,24 +58,36 @@ void main() {
     }
     vec3 place_m = began_m(at);
     vec3 velocity = from.list[at].xyz;
-    // The rate of strain: its diagonal, and twice what stands beside it.
-    vec3 along = vec3(0.0);
-    vec3 across = vec3(0.0);
+    // Slopes of the speed, times h, and what they come out as where every slope is 1.
+    mat3 slopes = mat3(0.0);
+    mat3 moment = mat3(0.0);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_at(place_m, x, z);
             uint end = min(stretch.y, stretch.x + MOST);
             for (uint i = stretch.x; i < end; i++) {
                 vec3 way = apart(place_m - began_m(i)) / flow.support_m;
-                vec3 bend = slope(length(way)) * (from.list[i].xyz - velocity);
-                along += bend * way;
-                across += bend.yzx * way.zxy + bend.zxy * way.yzx;
+                vec3 weight = flow.laplacian * slope(length(way)) * way;
+                slopes += outer(from.list[i].xyz - velocity, weight);
+                moment -= outer(way, weight);
             }
         }
     }
-    vec3 shear = wall_shear(walls_at(place_m));
-    along = flow.laplacian * along + velocity * shear;
-    across = flow.laplacian * across + velocity.yzx * shear.zxy + velocity.zxy * shear.yzx;
+    Walls walls = walls_at(place_m);
+    vec4 q = walls.sides_q;
+    vec4 sides = vec4(shear_beyond(q.x), shear_beyond(q.y), shear_beyond(q.z), shear_beyond(q.w));
+    float bed = shear_beyond(walls.bed_q);
+    slopes += outer(velocity, vec3(sides.x - sides.y, 0.0, sides.z - sides.w) + bed * walls.up);
+    vec4 moments = sides * q;
+    moment += bed * walls.bed_q * outer(walls.up, walls.up);
+    moment += mat3(vec3(moments.x + moments.y, 0.0, 0.0), vec3(0.0), vec3(0.0, 0.0, moments.z + moments.w));
+    slopes = slopes * inverse_of(moment);
+    // The rate of strain: its diagonal, and twice what stands beside it.
+    vec3 by_x = slopes[0];
+    vec3 by_y = slopes[1];
+    vec3 by_z = slopes[2];
+    vec3 along = vec3(by_x.x, by_y.y, by_z.z);
+    vec3 across = vec3(by_y.x + by_x.y, by_z.y + by_y.z, by_x.z + by_z.x);
     float strain_per_s = sqrt(2.0 * dot(along, along) + dot(across, across)) / flow.support_m;
     change.list[at] = vec4(vec3(0.0), strain_per_s);
 }

@@ -7,10 +7,14 @@
 // no step changes the momentum of lava that touches no wall; no sum over all particles is needed. Two particles of unlike
 // viscosities have their harmonic mean (Cleary 1998), which is as symmetric.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/bed.glsl"
+#include "lava/sph-walls.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second

@@ -25,6 +25,8 @@ layout(push_constant, std430) uniform Flow {
     float solidus_k;
     float per_viscosity; // 1 over that viscosity
     float stiffest; // most of that viscosity that crust and cold lava have
+    float share; // of the first of two layings of the rock in what is seen
+    vec2 kept_rock; // of each laying: 1, or 0 where the step begins with a new one
 } flow;
 
 layout(set = 0, binding = 0, std430) readonly buffer Starts {
@@ -68,57 +70,6 @@ float slope(float q) {
 vec3 apart(vec3 way_m) {
     vec2 turns = flow.periodic * floor(way_m.xz / flow.space_m.xz + 0.5);
     return vec3(way_m.x - turns.x * flow.space_m.x, way_m.y, way_m.z - turns.y * flow.space_m.z);
-}
-
-// Distances from the floor and from the four sides over h; no wall is out of reach.
-struct Walls {
-    float floor_q;
-    vec4 sides_q; // low x, high x, low z, high z
-};
-
-Walls walls_at(vec3 place_m) {
-    vec2 high = flow.space_m.xz - place_m.xz;
-    vec4 sides = vec4(place_m.x, high.x, place_m.z, high.y) / flow.support_m + flow.periodic * 2.0;
-    return Walls(max(place_m.y / flow.support_m, 0.0), max(sides, 0.0));
-}
-
-// Share of the kernel's sum that a half space of lava beyond a wall has, by the distance: the kernel's integral.
-float beyond(float q) {
-    float u = max(1.0 - q, 0.0);
-    float cubed = u * u * u;
-    return cubed * cubed * (3.5 - 4.5 * u + 1.5 * u * u);
-}
-
-// How fast it falls with the distance, per h.
-float beyond_slope(float q) {
-    float u = max(1.0 - q, 0.0);
-    float squared = u * u;
-    return 21.0 * squared * squared * u * (1.0 - 1.5 * u + 4.0 / 7.0 * squared);
-}
-
-float wall_share(Walls walls) {
-    vec4 q = walls.sides_q;
-    return beyond(walls.floor_q) + beyond(q.x) + beyond(q.y) + beyond(q.z) + beyond(q.w);
-}
-
-// Gradient of the walls' share, times h.
-vec3 wall_gradient(Walls walls) {
-    vec4 q = walls.sides_q;
-    float along_x = beyond_slope(q.y) - beyond_slope(q.x);
-    float along_z = beyond_slope(q.w) - beyond_slope(q.z);
-    return vec3(along_x, -beyond_slope(walls.floor_q), along_z);
-}
-
-// The drag of a half space whose speed goes on linearly through 0 at the wall (Morris et al. 1997), integrated.
-float drag_beyond(float q) {
-    float u = max(1.0 - q, 0.0);
-    float squared = u * u;
-    return squared * squared * u * (21.0 - 31.5 * u + 12.0 * squared) / max(q, 1.0e-3);
-}
-
-float wall_drag(Walls walls) {
-    vec4 q = walls.sides_q;
-    return drag_beyond(walls.floor_q) + drag_beyond(q.x) + drag_beyond(q.y) + drag_beyond(q.z) + drag_beyond(q.w);
 }
 
 // The stretch of particles in the column of cells that is so far from a cell, from one height to another: none beyond a wall.

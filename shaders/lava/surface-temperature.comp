@@ -1,6 +1,6 @@
 #version 450
 
-// Temperature of the surface in the middle of each column of the grid: the particles' around it, by the kernel along x and z,
+// Temperature of the surface in the middle of each column of the grid, and how far the rock has been carried: the particles' around it, by the kernel along x and z,
 // and by how far above or below the surface they lie, half the weight for each half distance of particles. They are taken
 // where the step has brought them, from the cells in which it began.
 
@@ -22,6 +22,12 @@ layout(set = 0, binding = 6) uniform texture2D normal_height;
 
 layout(set = 0, binding = 7, rgba32f) uniform image2D temperatures;
 
+layout(set = 0, binding = 8, std430) readonly buffer Carried {
+    vec4 list[]; // metres along x and z, of both layings of the rock
+} carried;
+
+layout(set = 0, binding = 9, rgba32f) uniform image2D surface_carried;
+
 const float HALVES_A_SUPPORT = 4.8; // the kernel's radius is 2.4 distances of particles
 const float MOST_HALVINGS = 40.0;
 
@@ -37,6 +43,7 @@ void main() {
     int highest = int(flow.counts.y) - 1;
     float weights = 0.0;
     float sum = 0.0;
+    vec4 carried_m = vec4(0.0);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
@@ -48,9 +55,11 @@ void main() {
                 float weight = kernel(length(way.xz)) * exp2(-halvings);
                 weights += weight;
                 sum += weight * heat.list[i].x;
+                carried_m += weight * carried.list[i];
             }
         }
     }
     bool is_there = weights > 0.0;
-    imageStore(temperatures, column, is_there ? vec4(sum / weights, 1.0, 0.0, 0.0) : vec4(0.0));
+    imageStore(temperatures, column, vec4(is_there ? vec2(sum / weights, 1.0) : vec2(0.0), flow.share, 0.0));
+    imageStore(surface_carried, column, is_there ? carried_m / weights : vec4(0.0));
 }

@@ -3,6 +3,9 @@
 
 layout(set = 0, binding = 1) uniform texture2D normal_height;
 
+// Least part of a normal that points up: a slope of 87 degrees.
+const float STEEPEST = 0.05;
+
 struct Splat {
     vec3 center_m;
     vec3 tangent;
@@ -25,8 +28,11 @@ Splat splat_at(vec2 place_m) {
     Splat splat;
     splat.center_m = vec3(place_m.x, surface.w, place_m.y);
     // The normal points upwards, so it is never along z.
-    splat.tangent = normalize(vec3(normal.y, -normal.x, 0.0));
-    splat.binormal = cross(normal, splat.tangent);
+    vec3 tangent = normalize(vec3(normal.y, -normal.x, 0.0));
+    // Ours: as long down a slope as the disc is that it covers of the map, so that a slope's splats lie as close as a plain's.
+    float up = max(normal.y, STEEPEST);
+    splat.tangent = mix(tangent, vec3(1.0, -normal.x / up, 0.0), scene.fitted);
+    splat.binormal = mix(cross(normal, tangent), vec3(0.0, normal.z / up, -1.0), scene.fitted);
     return splat;
 }
 

@@ -33,7 +33,11 @@ const ROOT: [&str; 19] = [
 /// Options of each paper, in whose frames every pass of it occurs.
 const FRAMES: [(&str, &str); 15] = [
     ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --variant all --object teapot"),
-    ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --simulation sph --variant gpu-driven"),
+    (
+        "lava",
+        "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --simulation sph --rheology basalt --object box \
+         --variant gpu-driven",
+    ),
     ("gas", "--size 45x31 --steps 8 --table 8 --variant all"),
     ("gas", "--size 45x31 --steps 8 --table 8 --lists tiles --density-cache 8 --skip-empty 0"),
     ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --planes 5 --variant all"),

@@ -123,7 +123,7 @@ impl Animate {
             Simulation::Free => Motion::Free(Free::new(shaders, parameters, &start, &states)?),
             Simulation::Sph => {
                 let count = particles.positions.len() as u32;
-                Motion::Sph(Box::new(Sph::new(context, [&states[0], &states[1], &start], count)?))
+                Motion::Sph(Box::new(Sph::new(context, [&states[0], &states[1], &start], count, &particles.bed)?))
             }
         };
         let inflow = Inflow::of(parameters, particles.positions.len() as u32);
@@ -143,9 +143,8 @@ impl Animate {
                 })?;
             }
             Motion::Sph(sph) => {
-                let to = self.steps as usize % 2;
-                let from = if self.steps == 0 { START } else { 1 - to };
-                sph.record(frame, [from, to], [self.steps, self.steps + 1].map(|steps| self.inflow.out(steps)))?;
+                let from = if self.steps == 0 { START } else { 1 - self.steps as usize % 2 };
+                sph.record(frame, from, self.steps, [self.steps, self.steps + 1].map(|steps| self.inflow.out(steps)))?;
             }
         }
         self.steps += 1;
@@ -188,7 +187,7 @@ impl Animate {
 
 /// Fills `start` with the particles and their temperatures; what is left of the last row stays at the origin and at rest.
 fn load(shaders: &ShaderLibrary, particles: &Particles, start: &State) -> Result<(), Error> {
-    let Particles { positions, velocities, temperatures_k } = particles;
+    let Particles { positions, velocities, temperatures_k, .. } = particles;
     for (view, values, last) in
         [(&start.positions, positions, &[][..]), (&start.velocities, velocities, &temperatures_k[..])]
     {

@@ -8,14 +8,18 @@ fn the_scene_holds_what_the_shaders_read() {
     for shader in [
         "lava/splat.geom",
         "lava/splat-quad.vert",
-        "lava/visibility.frag",
-        "lava/blending-height.frag",
-        "lava/blending-carried.frag",
-        "lava/march-height.frag",
-        "lava/march-carried.frag",
+        "lava/visibility-free.frag",
+        "lava/visibility-sph.frag",
+        "lava/blending-free.frag",
+        "lava/blending-sph.frag",
+        "lava/march-free.frag",
+        "lava/march-sph.frag",
         "lava/particles.vert",
-        "lava/object.vert",
-        "lava/object.frag",
+        "lava/object-free.vert",
+        "lava/object-sph.vert",
+        "lava/object-free.frag",
+        "lava/object-sph.frag",
+        "lava/lava-light.comp",
     ] {
         check_block::<SceneBlock>(shader, "scene");
     }

@@ -10,7 +10,7 @@
 //!   └─► visibility ─► blending ─► normalisation                                   (stage three, chapter 7)
 //! ```
 //!
-//! Polygon objects, if there are any, are drawn by `objects` into the picture after the thesis's last pass. The variant
+//! Polygon objects, if there are any, and a fluid's ground are drawn by `objects` into the picture after the thesis's last pass. The variant
 //! `gpu-driven` takes another way from `animate` to `normal-height`, its own page.
 
 mod accumulate_depths;
@@ -28,6 +28,8 @@ mod extract;
 mod gpu_driven;
 mod highest;
 mod highest_rows;
+pub mod kinds;
+pub mod lava_light;
 #[cfg(test)]
 mod layouts;
 mod march;
@@ -55,6 +57,7 @@ mod visibility;
 
 use std::sync::Arc;
 
+use self::lava_light::LavaLight;
 use self::normal_height::NormalHeight;
 use self::objects::Objects;
 use self::particles::ParticlePoints;
@@ -75,11 +78,13 @@ pub use self::parameters::{Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, 
 pub use self::placement::{Object, Place};
 pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
-pub use self::scene::{Sheet, depth_range_m};
+pub use self::scene::{FluidSheet, Sheet, depth_range_m};
 pub use self::sph::Sph;
+pub use self::sph::bed::Bed;
 pub use self::sph::heat::{Heat, Rheology};
 pub use self::sph::parameters::{Flow, Sides, Simulation};
 pub use self::sph::vent::{Inflow, Vent};
+pub use self::splats::SplatShape;
 pub use self::splatting::Splatting;
 pub use self::start::Particles;
 
@@ -97,8 +102,8 @@ pub const FLOORS: [(&str, &str); 4] = [
 ];
 
 /// Parameters that only the passes from the surface to the picture take, as constants.
-pub const DRAWN: [&str; 8] =
-    ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "temperatures", "tone"];
+pub const DRAWN: [&str; 9] =
+    ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "splat-shape", "temperatures", "tone"];
 
 /// The paper with its resources.
 pub struct Lava {
@@ -114,7 +119,9 @@ pub struct Lava {
     pub surface_temperature: Option<SurfaceTemperature>,
     /// Stage three.
     pub splatting: Splatting,
-    /// `None` without polygon objects.
+    /// `None` of free particles.
+    pub lava_light: Option<LavaLight>,
+    /// `None` without polygon objects and ground.
     objects: Option<Objects>,
     /// On lava and objects that the camera cannot show.
     view_warnings: Vec<String>,
@@ -157,10 +164,13 @@ impl Paper for Lava {
         }
         self.method.accumulate(frame)?;
         self.normal_height.record(frame)?;
-        if let Some(surface_temperature) = &self.surface_temperature {
-            surface_temperature.record(frame)?;
+        if let (Some(sph), Some(surface_temperature)) = (self.animate.sph(), &self.surface_temperature) {
+            surface_temperature.record(frame, sph, self.animate.steps())?;
         }
         self.splatting.record(frame, self.drift_m(number))?;
+        if let Some(lava_light) = &self.lava_light {
+            lava_light.record(frame)?;
+        }
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
     }
 
@@ -234,9 +244,13 @@ impl Paper for Lava {
             None => "x, y, z in metres per second",
             Some(_) => "x, y, z in metres per second, temperature in kelvin",
         };
-        let temperatures = self.surface_temperature.as_ref().map(|pass| {
-            Target::image("surface-temperatures", &pass.temperatures)
-                .of("temperature in kelvin, and 1 where any lava is near")
+        let of_a_fluid = self.surface_temperature.iter().flat_map(|pass| {
+            let carried = "x and z in metres that the rock of each of two layings has been carried";
+            [
+                Target::image("surface-temperatures", &pass.temperatures)
+                    .of("temperature in kelvin, 1 where any lava is near, share of the rock's first laying"),
+                Target::image("surface-carried", &pass.carried).of(carried),
+            ]
         });
         let targets = vec![
             Target::image("positions", positions).of("x, y, z in metres"),
@@ -253,7 +267,7 @@ impl Paper for Lava {
             Target::image("picture", &self.splatting.normalisation.picture)
                 .of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
         ];
-        targets.into_iter().chain(temperatures).collect()
+        targets.into_iter().chain(of_a_fluid).collect()
     }
 }
 
@@ -279,21 +293,26 @@ impl Lava {
         let count = particles.positions.len() as u32;
         let animate = Animate::new(shaders, label, parameters, particles)?;
         let method = Method::new(context, variant, &animate, count, instanced)?;
-        let normal_height = NormalHeight::new(context, method.sums())?;
+        let normal_height = NormalHeight::new(context, method.sums(), animate.sph().map(|sph| &sph.bed))?;
         let draw = parameters.surface_draw(variant);
         let surface = &normal_height.surface;
         let surface_temperature =
             animate.sph().map(|sph| SurfaceTemperature::new(context, sph, surface)).transpose()?;
-        let temperatures = surface_temperature.as_ref().map(|pass| &pass.temperatures);
-        let sheet = Sheet { normal_height: surface, temperatures };
+        let fluid = animate.sph().zip(surface_temperature.as_ref());
+        let fluid = fluid.map(|(sph, pass)| FluidSheet {
+            temperatures: pass.temperatures.clone(),
+            carried: pass.carried.clone(),
+            bed: sph.bed.clone(),
+        });
+        let sheet = Sheet { normal_height: surface, fluid: fluid.as_ref() };
         let splatting = Splatting::new(shaders, label, parameters, sheet, rock, instanced, draw)?;
         let Splatting { scene, depth, normalisation, .. } = &splatting;
         let view_warnings = view_warnings(parameters, objects);
         let meshes = objects.to_vec();
-        let objects = match objects {
-            [] => None,
-            meshes => Some(Objects::new(context, meshes, scene, depth, normalisation)?),
-        };
+        let ground = animate.sph().map(|_| particles.bed.mesh(parameters.space_m));
+        let lava_light = fluid.map(|fluid| LavaLight::new(context, scene, &fluid)).transpose()?;
+        let lamps = lava_light.as_ref().map(|pass| &pass.lamps);
+        let objects = Objects::new(context, objects, ground.as_ref(), scene, depth, normalisation, lamps)?;
         let points = (parameters.shading == Shading::Particles)
             .then(|| ParticlePoints::new(context, &animate, scene, normalisation))
             .transpose()?;
@@ -308,6 +327,7 @@ impl Lava {
             normal_height,
             surface_temperature,
             splatting,
+            lava_light,
             objects,
             view_warnings,
             meshes,
@@ -360,8 +380,11 @@ impl Lava {
         }
     }
 
-    /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle.
+    /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle. A fluid carries its own.
     fn drift_m(&self, number: u32) -> f32 {
+        if self.animate.sph().is_some() {
+            return 0.0;
+        }
         let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
         let drift_m = time_s * f64::from(self.parameters.speed_m_s);
         // Whole tiles change nothing and would cost precision.

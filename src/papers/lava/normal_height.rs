@@ -23,17 +23,28 @@ pub struct NormalHeight {
 }
 
 impl NormalHeight {
+    /// A fluid's lies on its bed where there is no lava.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, accumulated_depths: &Arc<ImageView>) -> Result<Self, Error> {
+    pub fn new(
+        context: Context<'_>,
+        accumulated_depths: &Arc<ImageView>,
+        bed: Option<&Arc<ImageView>>,
+    ) -> Result<Self, Error> {
         let parameters = context.parameters;
         let surface = context.grid_target("normal-height")?;
-        let pass = Pass::graphics("normal-height", "6.4", "common/fullscreen.vert", "lava/normal-height.frag")
+        let shader = if bed.is_some() { "lava/normal-height-sph.frag" } else { "lava/normal-height-free.frag" };
+        let pass = Pass::graphics("normal-height", "6.4", "common/fullscreen.vert", shader)
             .constants::<NormalConstants>()
             .with("accumulated_depths", accumulated_depths)
             .whole(&["accumulated_depths"])
-            .color(&surface, Load::Discard, Blend::Replace)
-            .build(context.shaders)?;
+            .color(&surface, Load::Discard, Blend::Replace);
+        let pass = match bed {
+            None => pass,
+            Some(bed) => pass.with("bed", bed),
+        };
+        let pass = pass.build(context.shaders)?;
         let constants = NormalConstants {
             space_m: [parameters.space_m.x, parameters.space_m.z],
             columns: [surface.width() as f32, surface.height() as f32],

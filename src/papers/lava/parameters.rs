@@ -7,6 +7,7 @@ use super::cameras::{self, CAMERAS};
 use super::color;
 use super::sph;
 use super::sph::parameters::{Flow, Simulation};
+use super::splats::SplatShape;
 use crate::measure::ParameterError;
 use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Value as _};
 pub use crate::papers::tone::Tone;
@@ -128,6 +129,8 @@ pub struct Parameters {
     pub splats: [u32; 2],
     /// Radius of a splat in metres, above 0, at most the shortest side of the space.
     pub splat_radius_m: f32,
+    /// Outline of a splat.
+    pub splat_shape: SplatShape,
     /// Depth behind the nearest splat within which a fragment is blended, metres (eq. 7.1), above 0 and at most 1000.
     pub epsilon_m: f32,
     /// Distance from the borders in metres over which the height sinks to 0, 0 to 1000.
@@ -178,6 +181,7 @@ impl Default for Parameters {
             surface_draw: None,
             splats: [600, 150],
             splat_radius_m: 0.020625,
+            splat_shape: SplatShape::Disc,
             epsilon_m: 0.05,
             border_m: 0.2,
             simulation: Simulation::Free,
@@ -281,6 +285,7 @@ impl Parameters {
                 .help("Radius of a splat, at most the shortest side of the space")
                 .section("7.1")
                 .everyday(),
+            Parameter::new("splat-shape", field!(Parameters.splat_shape)).help("Outline of a splat").section("9"),
             Parameter::new("epsilon", field!(Parameters.epsilon_m))
                 .range(up_to_1000)
                 .unit("metres")

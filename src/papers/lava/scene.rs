@@ -8,6 +8,7 @@ use super::blackbody;
 use super::parameters::Parameters;
 use super::rock::Rock;
 use super::sph::parameters::Simulation;
+use super::splats::SplatShape;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::update;
@@ -32,7 +33,7 @@ host_block! {
         per_brightest: f32,
         is_blackbody: f32,
         bare_m: f32,
-        _pad: f32,
+        fitted: f32,
     }
 }
 
@@ -41,8 +42,19 @@ host_block! {
 pub struct Sheet<'a> {
     /// Normals in RGB, heights in metres in alpha.
     pub normal_height: &'a Arc<ImageView>,
-    /// Kelvin in red where there is 1 in green; `None` where the temperature follows from the height.
-    pub temperatures: Option<&'a Arc<ImageView>>,
+    /// `None` of free particles, whose temperature follows from the height over a level floor.
+    pub fluid: Option<&'a FluidSheet>,
+}
+
+/// Temperatures, rock and ground of a fluid's surface.
+#[derive(Clone)]
+pub struct FluidSheet {
+    /// Kelvin in red where there is 1 in green, and in blue the share of the rock's first laying.
+    pub temperatures: Arc<ImageView>,
+    /// Metres along x and z that the rock of either laying has been carried.
+    pub carried: Arc<ImageView>,
+    /// Slopes of the ground along x and z, and its height in metres.
+    pub bed: Arc<ImageView>,
 }
 
 /// The scene on the device.
@@ -55,8 +67,8 @@ pub struct Scene {
     pub rock: Arc<ImageView>,
     /// Light of black bodies by temperature.
     pub emission: Arc<Buffer>,
-    /// Kelvin in red where there is 1 in green, over the whole space; `None` where the temperature follows from the height.
-    pub temperatures: Option<Arc<ImageView>>,
+    /// `None` of free particles.
+    pub fluid: Option<FluidSheet>,
     /// The sampler of the rock.
     pub linear: Arc<Sampler>,
 }
@@ -65,23 +77,32 @@ impl Scene {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, sheet: Sheet<'_>, rock: &Rock) -> Result<Self, Error> {
-        let Sheet { normal_height, temperatures } = sheet;
+        let Sheet { normal_height, fluid } = sheet;
         let block = block(context.parameters, normal_height, rock);
         Ok(Scene {
             normal_height: normal_height.clone(),
             block: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
             rock: rock.load(context)?,
             emission: blackbody::load(context)?,
-            temperatures: temperatures.cloned(),
+            fluid: fluid.cloned(),
             linear: Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?,
         })
     }
 
-    /// The shader of that stem that colours by these temperatures, and its pass with them.
+    /// The pass of the shader of that stem that knows where there is lava.
+    pub(super) fn bounded(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
+        match &self.fluid {
+            None => pass(&format!("{stem}-free.frag")),
+            Some(fluid) => pass(&format!("{stem}-sph.frag")).with("bed", &fluid.bed),
+        }
+    }
+
+    /// The same of a shader that colours the lava by its temperatures.
     pub(super) fn hot(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
-        match &self.temperatures {
-            None => pass(&format!("{stem}-height.frag")),
-            Some(temperatures) => pass(&format!("{stem}-carried.frag")).with("temperatures", temperatures),
+        let pass = self.bounded(pass, stem);
+        match &self.fluid {
+            None => pass,
+            Some(fluid) => pass.with("temperatures", &fluid.temperatures).with("carried", &fluid.carried),
         }
     }
 
@@ -134,6 +155,6 @@ fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
         per_brightest,
         is_blackbody: f32::from(u8::from(parameters.is_blackbody)),
         bare_m: bare_m(parameters),
-        _pad: 0.0,
+        fitted: f32::from(u8::from(parameters.splat_shape == SplatShape::Fitted)),
     }
 }

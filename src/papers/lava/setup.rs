@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::axes;
 use super::experiments::{self, Options};
+use super::kinds;
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::image::read_png_within;
@@ -23,9 +24,11 @@ use crate::measure::parameter::{Choice as _, Value as _};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Simulation, Variant};
+use crate::papers::lava::{
+    Bed, DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Sides, Simulation, Variant,
+};
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{Mesh, promised_triangles};
+use crate::scene::{HeightMapSource, Mesh, promised_triangles};
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -34,6 +37,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// PNG of the rock texture; the built-in one without.
     pub rock: Option<PathBuf>,
+    /// Height map of the ground under a fluid; without one the space's floor.
+    pub bed: Option<HeightMapSource>,
     /// Polygon meshes in the simulation space.
     pub objects: Vec<Object>,
     /// Crease angle of meshes without normals, degrees.
@@ -47,6 +52,7 @@ impl Default for Setup {
         Setup {
             parameters: Parameters::default(),
             rock: None,
+            bed: None,
             objects: Vec::new(),
             crease_deg: CREASE_DEG,
             preset: None,
@@ -55,6 +61,11 @@ impl Default for Setup {
 }
 
 impl Setup {
+    /// Those numbers, and nothing else.
+    fn of(parameters: Parameters) -> Self {
+        Setup { parameters, ..Setup::default() }
+    }
+
     /// Checks the parameters, and that what is drawn can be drawn together.
     ///
     /// # Errors
@@ -70,6 +81,15 @@ impl Setup {
                 return refused("the constant colour has no temperature; give `color` blackbody");
             }
         }
+        if let Some(bed) = &self.bed {
+            let refused = |problem| Err(Error::Input(format!("`bed` {bed}: {problem}")));
+            if self.parameters.simulation == Simulation::Free {
+                return refused("free particles know no ground; give `simulation` sph");
+            }
+            if self.parameters.flow.sides == Sides::Periodic {
+                return refused("a map does not repeat; choose `sides` walls");
+            }
+        }
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
                 let problem = "particles are points, without a surface that could hide it; choose another `shading`";
@@ -77,6 +97,23 @@ impl Setup {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The ground under the lava, which fits into the space with it.
+    fn load_bed(&self) -> Result<Bed, Error> {
+        let Some(source) = &self.bed else { return Ok(Bed::level()) };
+        let Parameters { space_m, particles, flow, .. } = &self.parameters;
+        let bed = Bed::of(&source.load()?, *space_m, flow.spacing_m(*particles));
+        let lava_m = if flow.vent.effusion_m3_s > 0.0 { flow.vent.radius_m } else { flow.block_m.y };
+        let (_, highest_m) = bed.highest();
+        let needed_m = highest_m + f64::from(lava_m);
+        if needed_m <= f64::from(space_m.y) {
+            return Ok(bed);
+        }
+        let problem = format!(
+            "it rises to {highest_m:.3} metres, and lava needs {lava_m} above it: make the `space` {needed_m:.3} metres high at least"
+        );
+        Err(Error::Input(format!("`bed` {source}: {problem}")))
     }
 }
 
@@ -115,7 +152,8 @@ impl Study for Setup {
         let space_m = self.parameters.space_m;
         let objects =
             self.objects.iter().map(|object| object.load(space_m, self.crease_deg)).collect::<Result<_, _>>()?;
-        Ok(Scene { particles: Particles::of(&self.parameters), rock, objects })
+        let particles = Particles::of(&self.parameters).over(self.load_bed()?);
+        Ok(Scene { particles, rock, objects })
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Lava, gpu::Error> {
@@ -132,7 +170,9 @@ impl Study for Setup {
     }
 
     fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
-        self.parameters.estimate(variant, &scene.rock, &scene.objects)
+        let mut estimate = self.parameters.estimate(variant, &scene.rock, &scene.objects);
+        estimate.bytes.push(("bed", scene.particles.bed.bytes()));
+        estimate
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
@@ -153,7 +193,8 @@ impl Study for Setup {
         if self.parameters.is_blackbody && self.parameters.simulation == Simulation::Free {
             config.insert("temperatures".to_owned(), json!(self.parameters.temperatures_k()));
         }
-        config.insert("rho".to_owned(), json!(self.parameters.rho()));
+        let slope_deg = self.parameters.flow.slope_deg(scene.particles.bed.is_level());
+        config.extend(entries([("rho", json!(self.parameters.rho())), ("slope", json!(slope_deg))]));
         add_object_triangles(&mut config, &scene.objects);
         config
     }
@@ -192,6 +233,13 @@ impl Study for Setup {
                 .section("7.2")
                 .default_text("the shipped one")
                 .cost(Cost::Buffers),
+            Parameter::new("bed", field!(Setup.bed))
+                .help(
+                    "With sph: height map of the ground, which covers the space in its own proportions, the lowest place at the \
+                     floor: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file",
+                )
+                .section("9")
+                .cost(Cost::Buffers),
             Parameter::new("object", field!(Setup.objects))
                 .help(
                     "Polygon mesh in the simulation space: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or \
@@ -210,6 +258,7 @@ impl Study for Setup {
     }
 
     fn presets() -> Vec<Preset<Self>> {
+        let kind = |name, help, setup| Preset { name, help, variant: Some(Variant::GpuDriven), setup };
         vec![
             Preset {
                 name: "results",
@@ -221,7 +270,7 @@ impl Study for Setup {
                 name: "fig-6.2",
                 help: "Figures 5.1, 5.2 and 6.2: 65,536 particles, a finer grid",
                 variant: None,
-                setup: || Setup { parameters: Parameters::of_figure_6_2(), ..Setup::default() },
+                setup: || Setup::of(Parameters::of_figure_6_2()),
             },
             Preset {
                 name: "fig-8.5",
@@ -232,6 +281,15 @@ impl Study for Setup {
                     Setup { parameters, ..Setup::default() }
                 },
             },
+            kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
+                Setup::of(kinds::pahoehoe())
+            }),
+            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, halted by a wall", || Setup::of(kinds::ropy())),
+            kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
+                bed: Some(HeightMapSource::Jacksboro),
+                ..Setup::of(kinds::toes())
+            }),
+            kind("aa", "Section 3.3: thicker, more viscous and yet faster", || Setup::of(kinds::aa())),
         ]
     }
 

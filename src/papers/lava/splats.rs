@@ -10,6 +10,24 @@ use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Buffer, Draw, Error, Pass, Topology};
 use crate::host_block;
+use crate::measure::parameter::Choice;
+
+/// Outline of a splat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SplatShape {
+    /// Section 7.1.
+    Disc,
+    /// As long down a slope as it is steep.
+    Fitted,
+}
+
+impl Choice for SplatShape {
+    const ALL: &'static [Self] = &[SplatShape::Disc, SplatShape::Fitted];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("disc", "The thesis's: a disc on the surface, so that steep slopes gape"),
+        ("fitted", "Stretched down a slope until it covers a disc of the map, so that nothing gapes"),
+    ];
+}
 
 host_block! {
     /// Position of a splat along x and z, metres.

@@ -1,13 +1,14 @@
 //! The particles as they start.
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 use super::parameters::Parameters;
 use super::sph;
+use super::sph::bed::Bed;
 use super::sph::parameters::Simulation;
 use crate::scene::random::Random;
 
-/// Positions in metres inside the simulation space, and velocities in metres per second.
+/// Positions in metres inside the simulation space, velocities in metres per second, and the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particles {
     /// Metres.
@@ -16,6 +17,8 @@ pub struct Particles {
     pub velocities: Vec<Vec3>,
     /// Kelvin, as many as positions; none of particles that have no temperature.
     pub temperatures_k: Vec<f32>,
+    /// Ground of a fluid.
+    pub bed: Bed,
 }
 
 impl Particles {
@@ -30,6 +33,7 @@ impl Particles {
             positions: Vec::with_capacity(count),
             velocities: Vec::with_capacity(count),
             temperatures_k: Vec::new(),
+            bed: Bed::level(),
         };
         for _ in 0..count {
             let place = [(); 3].map(|()| places.unit());
@@ -48,6 +52,14 @@ impl Particles {
             Simulation::Free => Particles::seeded(parameters),
             Simulation::Sph => sph::start::particles(parameters),
         }
+    }
+
+    /// The same as high above a bed as they are above the floor, in a space that is high enough.
+    pub fn over(mut self, bed: Bed) -> Self {
+        for place in &mut self.positions {
+            place.y += bed.at(DVec2::new(place.x.into(), place.z.into())).z as f32;
+        }
+        Particles { bed, ..self }
     }
 
     /// Width and height of a texture with a texel for each of `count` particles, as square as possible.

@@ -19,8 +19,8 @@ impl Visibility {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, scene: &Scene, splats: &Splats, depth: &Arc<ImageView>) -> Result<Self, Error> {
-        let pass = splats
-            .pass(scene, "visibility", "7.1", "lava/visibility.frag")
+        let pass = scene
+            .bounded(|shader| splats.pass(scene, "visibility", "7.1", shader), "lava/visibility")
             .depth(depth, FAR, DepthTest::LessWrite)
             .build(context.shaders)?;
         Ok(Visibility { pass })

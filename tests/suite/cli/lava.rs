@@ -243,6 +243,55 @@ fn the_crossing_lies_on_the_isosurface_and_the_mean_inside() {
 }
 
 #[test]
+fn lava_lies_on_a_map() {
+    let out = folder();
+    let map = |rows: &str| format!("ncols 5\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n{rows}");
+    file(&out, "ramp.asc", map("3 2 1 0 0\n3 2 1 0 0\n3 2 1 0 0\n"));
+    file(&out, "peak.asc", map("0 0 0 0 0\n0 0 900 0 0\n0 0 0 0 0\n"));
+    let picture = |options: &str, name: &str| {
+        let fluid = "--simulation sph --surface crossing --image";
+        small("render --quiet").args(options).args(fluid).arg(name).inside(out.path()).run().succeeded();
+        fs::read(out.path().join(name)).unwrap()
+    };
+    assert!(picture("--bed ramp.asc", "ramp.png") != picture("--slope 0", "level.png"));
+    let record = small("bench --json --quiet --validate --simulation sph --bed ramp.asc").args(ONCE);
+    let run = record.inside(out.path()).run().succeeded().json()["runs"][0].clone();
+    assert_eq!(
+        (&run["config"]["bed"], &run["config"]["slope"]),
+        (&"ramp.asc".into(), &0.0.into()),
+        "{}",
+        run["config"]
+    );
+    assert!(names(&run["passes"]).contains(&"objects"), "the ground is drawn: {}", run["passes"]);
+    let refused = |options: &str, words: &[&str]| {
+        small("render").args(options).inside(out.path()).run().refused(2, words);
+    };
+    refused("--bed ramp.asc", &["--bed ramp.asc", "--simulation sph"]);
+    refused("--simulation sph --sides periodic --bed ramp.asc", &["--bed ramp.asc", "--sides walls"]);
+    refused("--simulation sph --bed peak.asc", &["--bed peak.asc", "--space", "metres high"]);
+    refused("--simulation sph --bed none.asc", &["none.asc"]);
+}
+
+/// Free particles run through each other, and the relief goes with none; a fluid takes it along.
+#[test]
+fn relief_is_carried_by_a_fluid_and_not_by_free_particles() {
+    let out = folder();
+    let of = |options: &str| {
+        let finer = "--particles 2000 --radius 0.12 --density 60x16x16 --surface crossing";
+        let motion = small("experiment motion --frame 2 --out . --quiet").args(finer).args(options);
+        motion.inside(out.path()).run().succeeded();
+        assert_eq!(entries(out.path()), ["lava-motion.csv", "lava-motion.json", "lava-motion.svg"]);
+        let table = read_json(&out.path().join("lava-motion.json"));
+        let rows = table["table"]["rows"].as_array().unwrap().clone();
+        assert!((rows[3]["later s"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{table}");
+        [0, 3].map(|row: usize| rows[row]["correlation"].as_f64().unwrap_or_else(|| panic!("{table}")))
+    };
+    let (free, fluid) = (of(""), of("--simulation sph --viscosity 400"));
+    assert!(fluid[1] > 0.8 && free[1] < 0.7 && free[0] > free[1], "{free:?} {fluid:?}");
+    small("experiment motion --time-step 0").inside(out.path()).run().refused(2, &["--time-step"]);
+}
+
+#[test]
 fn a_flow_is_followed_over_time() {
     let out = folder();
     let flow =

@@ -45,7 +45,11 @@ fn lava_is_clean_with_its_options() {
         &Paper { scene, ..LAVA },
         &[
             ("all", "--simulation sph --surface top --color blackbody --object box --no-geometry-stage"),
-            ("gpu-driven", "--surface-draw splats --shading heights"),
+            ("gpu-driven", "--surface-draw splats --shading heights --splat-shape fitted"),
+            (
+                "gpu-driven",
+                "--simulation sph --bed maunga-whau --space 4x2x4 --rheology basalt --effusion-rate 0.02 --surface crossing",
+            ),
             ("gpu-driven", "--shading particles"),
             ("paper", "--shading normals"),
         ],

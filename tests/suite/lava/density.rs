@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use fumarole::papers::lava::reference::{clusters, density};
-use fumarole::papers::lava::{Parameters, Particles, Variant};
+use fumarole::papers::lava::{Bed, Parameters, Particles, Variant};
 use glam::{DVec3, Vec3};
 
 use super::scene::{clamped, densities, draw, grid, lava, parameters, read_back, variant_of};
@@ -113,8 +113,12 @@ fn a_particle_alone_is_a_metaball() {
         let far = parameters.space_m - 0.01;
         let cases = [(Vec3::splat(0.4), Vec3::X), (Vec3::splat(0.01), Vec3::NEG_ONE), (far, Vec3::ONE)];
         for (variant, (place, velocity)) in all_variants(&cases) {
-            let particles =
-                Particles { positions: vec![place], velocities: vec![velocity], temperatures_k: Vec::new() };
+            let particles = Particles {
+                positions: vec![place],
+                velocities: vec![velocity],
+                temperatures_k: Vec::new(),
+                bed: Bed::level(),
+            };
             let mut lava = variant_of(device, variant, &parameters, &particles);
             draw(device, &mut lava, 0);
             let place = clamped(device, &lava, &parameters)[0];

@@ -13,7 +13,7 @@ use fumarole::image::golden;
 use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::density;
 use fumarole::papers::lava::{
-    CAMERAS, Cells, GpuDriven, Lava, Method, Parameters, Particles, Rock, SurfaceDraw, Variant,
+    Bed, CAMERAS, Cells, GpuDriven, Lava, Method, Parameters, Particles, Rock, SurfaceDraw, Variant,
 };
 use glam::{DVec3, Vec3};
 
@@ -181,6 +181,7 @@ fn stretches_are_gathered_piece_by_piece() {
             positions: (0..count).map(at).collect(),
             velocities: vec![Vec3::ZERO; count as usize],
             temperatures_k: Vec::new(),
+            bed: Bed::level(),
         };
         let mut lava = variant_of(device, Variant::GpuDriven, &parameters, &particles);
         let sample = draw(device, &mut lava, 0);

@@ -3,11 +3,12 @@
 use fumarole::papers::lava::reference::{self, Heat as Oracle, cooled_slab, light, melt_viscosity, yield_stress};
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
-    Animate, Flow, Heat, Parameters, Particles, Rheology, Shading, Sides, SurfaceDraw, SurfaceKind, Variant,
+    Animate, Bed, Flow, Heat, Parameters, Particles, Rheology, Shading, Sides, SurfaceDraw, SurfaceKind, Variant,
 };
 use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
+use super::bed::{hills, over};
 use super::fluid::{animate, flowing, list, oracle, run, state, vectors};
 use super::scene::{draw, texels, variant_of};
 use super::splatting::low_camera;
@@ -60,8 +61,10 @@ fn heat_and_rheology_do_what_their_equations_say() {
         };
         let walled = with_heat(thin, crust.clone());
         let periodic = with_heat(periodic, Heat { emissivity: 0.5, ambient_k: 900.0, ..crust });
-        for parameters in [walled, periodic] {
-            let particles = half_cold(&parameters);
+        let on_level = |parameters: Parameters| (parameters, Bed::level());
+        let hilly = (walled.clone(), hills(&walled));
+        for (parameters, bed) in [on_level(walled), on_level(periodic), hilly] {
+            let particles = half_cold(&parameters).over(bed.clone());
             let mut animate = animate(device, &parameters, &particles);
             let strains = |animate: &Animate| -> Vec<f64> {
                 let texels: Vec<[f32; 4]> = texels(device, &animate.state().positions);
@@ -76,7 +79,7 @@ fn heat_and_rheology_do_what_their_equations_say() {
             let pushed: Vec<[f32; 4]> = list(device, &sph.pushed);
             let kelvin: Vec<f64> = pushed.iter().map(|p| f64::from(p[3])).collect();
             let heat: Vec<[f32; 2]> = list(device, &sph.heat);
-            let (fluid, rules) = (oracle(&parameters), oracle_of(&parameters));
+            let (fluid, rules) = (over(oracle(&parameters), &bed), oracle_of(&parameters));
 
             let (mut off_kelvin, mut off_steep, mut lost, mut gained, mut faces) = (0.0f64, 0.0f64, 0.0f64, 0.0f64, 0);
             for i in 0..began.len() {
@@ -104,7 +107,10 @@ fn heat_and_rheology_do_what_their_equations_say() {
             let now = strains(&animate);
             let (mut off_strain, mut strained) = (0.0f64, 0.0f64);
             for (at, [_, number]) in items.iter().enumerate() {
-                let expected = fluid.strain_rate(&began, &after, at);
+                let (expected, is_close_call) = fluid.strain_rate(&began, &after, at);
+                if is_close_call {
+                    continue;
+                }
                 off_strain = off_strain.max((now[*number as usize] - expected).abs());
                 strained = strained.max(expected);
             }
@@ -227,7 +233,7 @@ fn a_film_of_crust_has_a_bingham_fluids_speed() {
         let flow = Flow {
             block_m: spacing * Vec3::new(8.0, 12.0, 8.0),
             viscosity_pa_s: 800.0,
-            slope_deg: 6.0,
+            slope_deg: Some(6.0),
             sides: Sides::Periodic,
             heat,
             ..Flow::default()
@@ -240,9 +246,10 @@ fn a_film_of_crust_has_a_bingham_fluids_speed() {
         let mean = velocities.iter().map(|v| v.x).sum::<f64>() / 768.0;
         let depth = 12.0 * f64::from(spacing);
         let thickness = 2.0 * places.iter().map(|p| p.y).sum::<f64>() / 768.0;
-        let Flow { viscosity_pa_s, melt_kg_m3, gravity_m_s2, slope_deg, heat, .. } = &parameters.flow;
+        let slope = f64::from(parameters.flow.slope_deg(true)).to_radians();
+        let Flow { viscosity_pa_s, melt_kg_m3, gravity_m_s2, heat, .. } = &parameters.flow;
         let (melt, stiff) = (f64::from(*viscosity_pa_s), f64::from(heat.crust_pa_s));
-        let along = f64::from(*gravity_m_s2) * f64::from(*slope_deg).to_radians().sin();
+        let along = f64::from(*gravity_m_s2) * slope.sin();
         let at_bed = f64::from(*melt_kg_m3) * depth * along;
         let yielding = yield_stress(f64::from(kelvin));
         // The mean of the speed is the integral of the rate of strain times what lies above it.

@@ -2,7 +2,7 @@
 
 use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::{Grid, Surface};
-use fumarole::papers::lava::{Parameters, Particles, SurfaceKind, Variant};
+use fumarole::papers::lava::{Bed, Parameters, Particles, SurfaceKind, Variant};
 use glam::{DVec3, Vec3};
 
 use super::scene::{densities, draw, grid, lava, parameters, read_back, texels, variant_of};
@@ -117,7 +117,8 @@ fn a_known_height_field_comes_out() {
         let plane = |i: usize, k: usize| (i * i / 3 + 2 * k + i * k) % 10;
         let columns = || (0..10).flat_map(|k| (0..20).map(move |i| (i, k)));
         let positions = columns().map(|(i, k)| grid.place([i, plane(i, k), k]).as_vec3()).collect();
-        let particles = Particles { positions, velocities: vec![Vec3::X; 200], temperatures_k: Vec::new() };
+        let particles =
+            Particles { positions, velocities: vec![Vec3::X; 200], temperatures_k: Vec::new(), bed: Bed::level() };
         for variant in [Variant::Paper, Variant::GpuDriven] {
             let mut lava = variant_of(device, variant, &parameters, &particles);
             draw(device, &mut lava, 0);

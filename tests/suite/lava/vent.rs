@@ -88,7 +88,7 @@ fn a_dome_grows_as_a_viscous_gravity_current() {
             flow: Flow {
                 block_m: Vec3::new(0.4, 0.25, 0.4),
                 viscosity_pa_s: 1000.0,
-                slope_deg: 0.0,
+                slope_deg: Some(0.0),
                 vent: Vent { effusion_m3_s: 0.01, middle_m: [0.6, 0.6], radius_m: 0.1 },
                 ..Flow::default()
             },

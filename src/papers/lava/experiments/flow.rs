@@ -1,6 +1,6 @@
 //! Measurements of one who studies lava flows, over time: effusion, front, area, thickness, temperatures.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use serde_json::{Value, json};
 
 use super::super::animate::Animate;
@@ -12,7 +12,7 @@ use crate::measure::Error;
 use crate::measure::machine::Machine;
 use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study as _;
-use crate::papers::lava::Simulation;
+use crate::papers::lava::{Bed, Simulation};
 
 /// Frames without `frames`: ten seconds of the default step.
 pub const FRAMES: u32 = 300;
@@ -37,8 +37,15 @@ struct Observed {
     greatest_k: f64,
 }
 
-/// Of these particles, metres and kelvin; at least one.
-fn observed(space_m: Vec3, spacing_m: f64, places: &[DVec3], kelvin: &[f64]) -> Observed {
+/// Of these particles, metres and kelvin, over a bed; at least one. The front is as far along x as a particle is, or from the
+/// middle of a vent.
+fn observed(
+    space_m: Vec3,
+    spacing_m: f64,
+    (bed, vent_m): (&Bed, Option<DVec2>),
+    places: &[DVec3],
+    kelvin: &[f64],
+) -> Observed {
     let sides = [space_m.x, space_m.z].map(f64::from);
     let counts = sides.map(|side| (side / (SQUARE * spacing_m)).round().max(1.0));
     let square = |place: &DVec3| {
@@ -49,11 +56,12 @@ fn observed(space_m: Vec3, spacing_m: f64, places: &[DVec3], kelvin: &[f64]) -> 
     squares.sort_unstable();
     squares.dedup();
     // A particle reaches half a distance beyond its middle.
-    let reach = |of: fn(&DVec3) -> f64| places.iter().map(of).fold(0.0, f64::max) + 0.5 * spacing_m;
+    let reach = |of: &dyn Fn(&DVec3) -> f64| places.iter().map(of).fold(0.0, f64::max) + 0.5 * spacing_m;
+    let front = |place: &DVec3| vent_m.map_or(place.x, |vent_m| vent_m.distance(DVec2::new(place.x, place.z)));
     Observed {
-        front_m: reach(|place| place.x),
+        front_m: reach(&front),
         area_m2: squares.len() as f64 * sides[0] * sides[1] / (counts[0] * counts[1]),
-        highest_m: reach(|place| place.y),
+        highest_m: reach(&|place| place.y - bed.at(DVec2::new(place.x, place.z)).z),
         mean_k: kelvin.iter().sum::<f64>() / kelvin.len() as f64,
         greatest_k: kelvin.iter().copied().fold(0.0, f64::max),
     }
@@ -82,6 +90,8 @@ pub fn table(machine: &mut Machine, setup: &Setup, frames: u32) -> Result<Result
     let scale = Scale::of(p);
     let mut animate = Animate::new(&machine.shaders, "flow", p, &scene.particles)?;
     let particle_m3 = scale.spacing_m.powi(3);
+    let vent = p.flow.vent;
+    let vent_m = (vent.effusion_m3_s > 0.0).then(|| DVec2::from(vent.middle_m.map(f64::from)));
     let mut rows: Vec<Vec<Value>> = Vec::new();
     let mut before = (0.0, 0.0);
     for row in 0..=ROWS.min(frames - 1) {
@@ -101,7 +111,7 @@ pub fn table(machine: &mut Machine, setup: &Setup, frames: u32) -> Result<Result
         let places: Vec<DVec3> =
             read(&state.positions)?.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect();
         let kelvin: Vec<f64> = read(&state.velocities)?.iter().map(|texel| f64::from(texel[3])).collect();
-        let seen = observed(p.space_m, scale.spacing_m, &places, &kelvin);
+        let seen = observed(p.space_m, scale.spacing_m, (&scene.particles.bed, vent_m), &places, &kelvin);
         let skin_k = sph.skin_k(&machine.device, out)?;
         let (time_s, volume_m3) = (f64::from(wanted) * f64::from(p.time_step_s), out as f64 * particle_m3);
         // What stands there at the start has not come out.
@@ -150,10 +160,13 @@ mod tests {
         let place = |n: u32| DVec3::new(f64::from(n % 20), f64::from(n / 200), f64::from(n / 20 % 10));
         let places: Vec<DVec3> = (0..600).map(|n| 0.1 * (place(n) + 0.5)).collect();
         let kelvin: Vec<f64> = (0..600).map(|n| 1000.0 + f64::from(n)).collect();
-        let seen = observed(Vec3::new(6.0, 1.0, 3.0), 0.1, &places, &kelvin);
+        let level = Bed::level();
+        let seen = observed(Vec3::new(6.0, 1.0, 3.0), 0.1, (&level, None), &places, &kelvin);
         assert!((seen.front_m - 2.0).abs() < 1e-9 && (seen.highest_m - 0.3).abs() < 1e-9, "{seen:?}");
         // 40 x 20 squares of 0.15 m: 14 x 7 of them reach into the slab of 2 m x 1 m.
         assert!((seen.area_m2 - 14.0 * 7.0 * 0.0225).abs() < 1e-9, "{seen:?}");
         assert!((seen.mean_k - 1299.5).abs() < 1e-9 && seen.greatest_k == 1599.0, "{seen:?}");
+        let seen = observed(Vec3::new(6.0, 1.0, 3.0), 0.1, (&level, Some(DVec2::new(1.95, 0.95))), &places, &kelvin);
+        assert!((seen.front_m - 1.9f64.hypot(0.9) - 0.05).abs() < 1e-9, "{seen:?}");
     }
 }

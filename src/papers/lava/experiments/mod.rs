@@ -2,10 +2,12 @@
 
 pub mod figures;
 mod flow;
+mod motion;
 pub mod points;
 mod readback;
 mod results;
 mod scaling;
+mod strip;
 mod surface;
 
 use self::figures::{Drawn, FIGURES};
@@ -24,7 +26,7 @@ type Context<'a> = experiment::Context<'a, Setup>;
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Frame of a figure.
-    frame: u32,
+    frame: Option<u32>,
 }
 
 /// The options of the experiments.
@@ -32,7 +34,8 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("frame", field!(Options.frame))
             .range(Range::from(0.0).to(100_000.0))
-            .help("Frame of a figure's pictures and textures"),
+            .help("Frame of a figure's pictures and textures; the last of a strip, the first of motion")
+            .default_text("0; of a strip 239, of motion 29"),
     ]
 }
 
@@ -71,9 +74,27 @@ pub fn all() -> Vec<Experiment<Setup>> {
         refuses: &[("frame", "this experiment follows frames from 0 on; give `frames`")],
         run: flows,
     };
-    figures.into_iter().chain(others).chain([surface, flow]).collect()
+    let motion = Experiment {
+        name: "motion",
+        help: "Relief carried along with the particles, beside that of later frames: correlations up to 2 s",
+        options: &["frame"],
+        refuses: &[],
+        run: motions,
+    };
+    let strip = Experiment {
+        name: "strip",
+        help: "Five pictures over time, side by side: a flow of one of chapter 3's kinds by its preset",
+        options: &["frame"],
+        refuses: REFUSED_BY_STRIPS,
+        run: strip_of,
+    };
+    figures.into_iter().chain(others).chain([surface, motion, flow, strip]).collect()
 }
 
+const REFUSED_BY_STRIPS: &[(&str, &str)] = &[
+    ("json", "a strip is a picture; the experiment flow has a table"),
+    ("csv", "a strip is a picture; the experiment flow has rows"),
+];
 const REFUSED_BY_FIGURES: &[(&str, &str)] = &[
     ("json", "a figure is pictures; the experiment results has a record"),
     ("csv", "a figure is pictures; the experiment results has rows"),
@@ -91,7 +112,7 @@ fn draw(context: &mut Context<'_>) -> Result<(), Error> {
     figure.set_up(&mut context.setup, &context.given);
     figure.check(&context.setup)?;
     let mut machine = context.open()?;
-    let parts = figure.draw(&mut machine, &context.setup, context.options.frame)?;
+    let parts = figure.draw(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
     for (suffix, drawn) in parts {
         let suffix = format!("{suffix}.png");
         match drawn {
@@ -156,7 +177,7 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
 fn surfaces(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
-    let table = surface::table(&mut machine, &context.setup, context.options.frame)?;
+    let table = surface::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
     context.publish_table(&machine, &table)?;
     machine.check_validation().map_err(Error::from).map(drop)
 }
@@ -170,6 +191,22 @@ fn flows(context: &mut Context<'_>) -> Result<(), Error> {
     let temperatures = table.lines("time s", "kelvin", &flow::TEMPERATURES)?;
     context.save(&context.file("-temperatures.svg"), temperatures.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn motions(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let table = motion::table(&mut machine, &context.setup, context.options.frame.unwrap_or(motion::FRAME))?;
+    context.publish_plotted(&machine, &table, table.lines("later s", "correlation", &["correlation"]))?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn strip_of(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let strip = strip::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(strip::LAST_FRAME))?;
+    context.picture(".png", &strip)?;
     machine.check_validation().map_err(Error::from).map(drop)
 }
 

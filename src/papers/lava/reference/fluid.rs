@@ -1,11 +1,13 @@
 //! A viscous fluid of particles (chapter 9, "Improved particle simulation"), each against every other.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The fluid's numbers, in metres, seconds and kilograms.
 pub struct Fluid {
-    /// Extent of the space along x, y and z, from 0 on; the floor is y = 0, and y has no upper end.
+    /// Extent of the space along x, y and z, from 0 on; y has no upper end.
     pub space: DVec3,
+    /// The ground at a place along x and z: its slopes along both, and its height.
+    pub bed: Box<dyn Fn(DVec2) -> DVec3>,
     /// Distance of the particles at rest.
     pub spacing: f64,
     /// Radius of the kernel.
@@ -18,6 +20,15 @@ pub struct Fluid {
     pub margin: f64,
     /// x and z repeat instead of having walls.
     pub is_periodic: bool,
+}
+
+/// A wall from a place.
+pub(super) struct Wall {
+    pub(super) distance: f64,
+    /// Away from it.
+    pub(super) normal: DVec3,
+    /// Of the pair that it belongs to; 1 of the bed.
+    pub(super) axis: usize,
 }
 
 /// Wendland's kernel C2: 21 / (2 pi h^3) (1 - q)^4 (1 + 4 q).
@@ -68,16 +79,18 @@ impl Fluid {
         (self.spacing.powi(3) / density, self.spacing.powi(3) / laplacian)
     }
 
-    /// Distances to walls and the directions away from them.
-    pub(super) fn walls(&self, place: DVec3) -> Vec<(f64, DVec3)> {
-        let floor = (place.y, DVec3::Y);
+    /// Distances to walls and the directions away from them, of the bed to the plane that touches it below, by axis.
+    pub(super) fn walls(&self, place: DVec3) -> Vec<Wall> {
+        let DVec3 { x: along_x, y: along_z, z: height } = (self.bed)(DVec2::new(place.x, place.z));
+        let normal = DVec3::new(-along_x, 1.0, -along_z).normalize();
+        let bed = Wall { distance: ((place.y - height) * normal.y).max(0.0), normal, axis: 1 };
         let sides = [
-            (place.x, DVec3::X),
-            (self.space.x - place.x, DVec3::NEG_X),
-            (place.z, DVec3::Z),
-            (self.space.z - place.z, DVec3::NEG_Z),
+            Wall { distance: place.x, normal: DVec3::X, axis: 0 },
+            Wall { distance: self.space.x - place.x, normal: DVec3::NEG_X, axis: 0 },
+            Wall { distance: place.z, normal: DVec3::Z, axis: 2 },
+            Wall { distance: self.space.z - place.z, normal: DVec3::NEG_Z, axis: 2 },
         ];
-        [floor].into_iter().chain(sides.into_iter().filter(|_| !self.is_periodic)).collect()
+        [bed].into_iter().chain(sides.into_iter().filter(|_| !self.is_periodic)).collect()
     }
 
     /// The kernel integrated over a plane at a distance.
@@ -120,7 +133,7 @@ impl Fluid {
                 others += gradient.length_squared();
             }
         }
-        for (distance, normal) in self.walls(places[at]) {
+        for Wall { distance, normal, .. } in self.walls(places[at]) {
             density += self.beyond(distance);
             own -= self.over_plane(distance) * normal;
         }
@@ -139,7 +152,7 @@ impl Fluid {
                 push += (factors[at] + factors[i]) * volume * slope * offset.normalize();
             }
         }
-        for (distance, normal) in self.walls(places[at]) {
+        for Wall { distance, normal, .. } in self.walls(places[at]) {
             push -= factors[at] * self.over_plane(distance) * normal;
         }
         self.inside(places[at] + push)
@@ -148,7 +161,11 @@ impl Fluid {
     fn inside(&self, place: DVec3) -> DVec3 {
         let low = DVec3::splat(self.margin);
         let clamped = place.clamp(low, self.space - low);
-        if self.is_periodic { DVec3::new(place.x, clamped.y, place.z) } else { clamped }
+        let across = if self.is_periodic { place } else { clamped };
+        let ground = (self.bed)(DVec2::new(across.x, across.z));
+        // As far above the ground as a plane that steep is when its distance is the margin.
+        let lowest = ground.z + self.margin * (1.0 + ground.x * ground.x + ground.y * ground.y).sqrt();
+        DVec3::new(across.x, clamped.y.max(lowest), across.z)
     }
 
     /// Residual of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity,
@@ -172,7 +189,7 @@ impl Fluid {
                 braked += rate * viscosity * volume * drag * (after[at] - after[i]);
             }
         }
-        for (distance, _) in self.walls(places[at]) {
+        for Wall { distance, .. } in self.walls(places[at]) {
             braked += rate * viscosities[at] * self.wall_drag(distance) * after[at];
         }
         before[at] - braked

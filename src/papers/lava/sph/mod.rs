@@ -11,11 +11,13 @@
 //! (Morris et al. 1997, by Chebyshev's semi-iteration), with `sph-rheology` one that follows from temperature and stress. All sums are gathered in the order of the cells: every run is the same
 //! to the bit.
 
+pub mod bed;
 pub mod chebyshev;
 pub mod check;
 pub mod heat;
 pub mod kernel;
 pub mod parameters;
+pub mod rock;
 mod sph_correct;
 mod sph_density;
 mod sph_finish;
@@ -35,8 +37,10 @@ use std::sync::Arc;
 use ash::vk;
 use glam::DVec3;
 
+use self::bed::Bed;
 use self::chebyshev::Coefficients;
 use self::heat::Rheology;
+use self::rock::{Layings, Rock};
 use self::sph_correct::sph_correct;
 use self::sph_density::sph_density;
 use self::sph_finish::sph_finish;
@@ -55,7 +59,7 @@ use super::parameters::Parameters;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
-use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, Pass};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, ImageView, Pass};
 use crate::host_block;
 use crate::measure::estimate::Estimate;
 
@@ -84,6 +88,8 @@ host_block! {
         solidus_k: f32,
         per_viscosity: f32,
         stiffest: f32,
+        share: f32,
+        kept_rock: [f32; 2],
     }
 }
 
@@ -115,7 +121,8 @@ pub struct Sph {
     predict: Pass,
     density: [Pass; 2],
     correct: [Pass; 2],
-    finish: [Pass; 2],
+    /// From each state.
+    finish: [Pass; 3],
     constants: FlowConstants,
     coefficients: Vec<Coefficients>,
     corrections: u32,
@@ -131,6 +138,10 @@ pub struct Sph {
     /// Factor of the constraint times h^-2, density over that at rest: before the last correction.
     pub factors: Arc<Buffer>,
     crowded: Arc<Buffer>,
+    /// The ground: slopes along x and z, heights in metres.
+    pub bed: Arc<ImageView>,
+    /// The rock on it.
+    pub rock: Rock,
 }
 
 /// Passes `sph-rheology` and `sph-strain`.
@@ -199,11 +210,11 @@ impl Scale {
 }
 
 impl Sph {
-    /// The steps between these states; the last is the start and is not written.
+    /// The steps between these states over a bed; the last state is the start and is not written.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, states: [&State; 3], particle_count: u32) -> Result<Self, Error> {
+    pub fn new(context: Context<'_>, states: [&State; 3], particle_count: u32, bed: &Bed) -> Result<Self, Error> {
         let Context { shaders, parameters, .. } = context;
         let scale = Scale::of(parameters);
         let cells = scale.cells(parameters, particle_count);
@@ -221,38 +232,48 @@ impl Sph {
         let heat = buffer("heat", 8)?;
         let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
 
+        let is_level = bed.is_level();
+        let bed = bed.texture(context)?;
+        let ground = Ground { sort: &sort, bed: &bed };
         let coefficients = chebyshev::coefficients(scale.stiffness * scale.stiffest);
         let rheology = match parameters.flow.heat.rheology {
             Rheology::Constant => None,
             Rheology::Basalt => {
                 let viscosities = buffer("viscosities", 4)?;
                 let pass = sph_rheology(shaders, &sort, [&change, &heat], &viscosities)?;
-                let strain = sph_strain(shaders, &sort, &velocities[coefficients.len() % 2], &change)?;
+                let strain = sph_strain(shaders, ground, &velocities[coefficients.len() % 2], &change)?;
                 Some(Rheologic { pass, strain, viscosities })
             }
         };
         let corrections = parameters.flow.corrections;
-        let inflow = |state| sph_inflow(shaders, states[2], state);
+        let width = states[0].positions.width();
+        let renewal_steps = f64::from(parameters.flow.renewal_s) / f64::from(parameters.time_step_s);
+        let size = (width, states[0].positions.height());
+        let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
+        let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state]);
         let forces = |state| sph_forces(shaders, &sort, state, [&pushed, &velocities[0], &change]);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
-            sph_viscosity(shaders, &sort, [&velocities[from], &velocities[to]], [&pushed, &change], viscosities)
+            sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], [&pushed, &change], viscosities)
         };
-        let density = |from: usize| sph_density(shaders, &sort, &predicted[from], [&factors, &crowded]);
+        let density = |from: usize| sph_density(shaders, ground, &predicted[from], [&factors, &crowded]);
         let correct =
-            |[from, to]: [usize; 2]| sph_correct(shaders, &sort, [&predicted[from], &predicted[to]], &factors);
-        let finish = |state| sph_finish(shaders, &sort, [&predicted[corrections as usize % 2], &heat, &change], state);
+            |[from, to]: [usize; 2]| sph_correct(shaders, ground, [&predicted[from], &predicted[to]], &factors);
+        let finish = |[from, to]: [usize; 2]| {
+            let arrived = &predicted[corrections as usize % 2];
+            sph_finish(shaders, &sort, [arrived, &heat, &change], states[to], (&rock, [from, to]))
+        };
         Ok(Sph {
-            inflow: [inflow(states[0])?, inflow(states[1])?],
+            inflow: [inflow(0)?, inflow(1)?],
             forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
-            heat_pass: sph_heat(shaders, &sort, &pushed, &heat)?,
+            heat_pass: sph_heat(shaders, ground, &pushed, &heat)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
             rheology,
-            predict: sph_predict(shaders, &sort, &velocities[coefficients.len() % 2], &predicted[0])?,
+            predict: sph_predict(shaders, ground, &velocities[coefficients.len() % 2], &predicted[0])?,
             density: [density(0)?, density(1)?],
             correct: [correct([0, 1])?, correct([1, 0])?],
-            finish: [finish(states[0])?, finish(states[1])?],
-            constants: constants(parameters, &scale, &cells, states[0].positions.width()),
+            finish: [finish([0, 1])?, finish([1, 0])?, finish([2, 0])?],
+            constants: FlowConstants { width, ..constants(parameters, &scale, &cells, is_level) },
             sort,
             coefficients,
             corrections,
@@ -262,16 +283,19 @@ impl Sph {
             predicted,
             factors,
             crowded,
+            bed,
+            rock,
         })
     }
 
-    /// A step from one state to another; the third is the start. Of the particles that are `out`, `before` have been so in
+    /// The step of this number from a state, the third of which is the start. Of the particles that are `out`, `before` have been so in
     /// the last step.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, [from, to]: [usize; 2], [before, out]: [u32; 2]) -> Result<(), Error> {
-        let constants = FlowConstants { particles: out, ..self.constants };
+    pub fn record(&self, frame: &mut Frame<'_>, from: usize, step: u32, [before, out]: [u32; 2]) -> Result<(), Error> {
+        let Layings { kept, .. } = self.rock.layings(step);
+        let constants = FlowConstants { particles: out, kept_rock: kept, ..self.constants };
         let particles = out;
         // The start has all of them.
         if let Some(inflow) = self.inflow.get(from).filter(|_| out > before) {
@@ -302,7 +326,7 @@ impl Sph {
             run(frame, &self.density[at % 2], &constants)?;
             run(frame, &self.correct[at % 2], &constants)?;
         }
-        run(frame, &self.finish[to], &constants)
+        run(frame, &self.finish[from], &constants)
     }
 
     /// Iterations of a step's viscosity.
@@ -360,6 +384,20 @@ fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
         .with("zs", zs)
 }
 
+/// The particles by cells, and the ground under them.
+#[derive(Clone, Copy)]
+struct Ground<'a> {
+    sort: &'a Sort,
+    bed: &'a Arc<ImageView>,
+}
+
+impl Ground<'_> {
+    /// Begins a pass over the particles that feels the walls.
+    fn over_cells(self, name: &'static str, shader: &str) -> PassBuilder {
+        over_cells(name, shader, self.sort).with("bed", self.bed)
+    }
+}
+
 /// Device memory, passes and the work of a step. A particle looks at those of 27 cells, of its own volume each as long as they
 /// are at rest.
 pub fn estimate(parameters: &Parameters) -> Estimate {
@@ -372,7 +410,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
         chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 2.0;
     let [columns, _, rows] = parameters.density.map(f64::from);
     Estimate {
-        bytes: vec![("particles", 100.0 * particles + sort::bytes(&cells)), ("density", TEXEL * columns * rows)],
+        bytes: vec![("particles", 164.0 * particles + sort::bytes(&cells)), ("density", 2.0 * TEXEL * columns * rows)],
         buffers: vec![("particles", 16.0 * particles)],
         passes: Some(("corrections", iterations as u64 + 24)),
         invocations: vec![("particles", particles * looked_at * iterations)],
@@ -380,14 +418,14 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     }
 }
 
-fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, width: u32) -> FlowConstants {
+fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, is_level: bool) -> FlowConstants {
     let flow = &parameters.flow;
-    let (sine, cosine) = flow.slope_deg.to_radians().sin_cos();
+    let (sine, cosine) = flow.slope_deg(is_level).to_radians().sin_cos();
     FlowConstants {
         space_m: parameters.space_m.to_array(),
         particles: cells.particles,
         counts: cells.counts,
-        width,
+        width: 0,
         gravity_m_s2: [flow.gravity_m_s2 * sine, -flow.gravity_m_s2 * cosine, 0.0],
         time_step_s: parameters.time_step_s,
         support_m: scale.support_m as f32,
@@ -407,5 +445,7 @@ fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, width: u32) 
         solidus_k: flow.heat.solidus_k,
         per_viscosity: 1.0 / flow.viscosity_pa_s.max(f32::MIN_POSITIVE),
         stiffest: scale.stiffest as f32,
+        share: 0.0,
+        kept_rock: [1.0; 2],
     }
 }

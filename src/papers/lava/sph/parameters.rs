@@ -51,12 +51,14 @@ pub struct Flow {
     pub melt_kg_m3: f32,
     /// Gravity in metres per second squared, 0 to 100.
     pub gravity_m_s2: f32,
-    /// Slope of the floor down along x in degrees, 0 to 80.
-    pub slope_deg: f32,
+    /// Slope of the floor down along x in degrees, 0 to 80; without one, that of [`Flow::slope_deg`].
+    pub slope_deg: Option<f32>,
     /// Bounds of the fluid along x and z.
     pub sides: Sides,
     /// Corrections of the density in a step, 1 to 100.
     pub corrections: u32,
+    /// Time in seconds after which each of two layings of the rock is renewed, 0.1 to 1000.
+    pub renewal_s: f32,
     /// Heat, and what it makes of the viscosity.
     pub heat: Heat,
     /// Vent that it comes out of, if it does not stand there at the start.
@@ -70,9 +72,10 @@ impl Default for Flow {
             viscosity_pa_s: 100.0,
             melt_kg_m3: 2700.0,
             gravity_m_s2: 9.81,
-            slope_deg: 10.0,
+            slope_deg: None,
             sides: Sides::Walls,
             corrections: 12,
+            renewal_s: 4.0,
             heat: Heat::default(),
             vent: Vent::default(),
         }
@@ -117,7 +120,9 @@ impl Flow {
                 .unit("degrees")
                 .help("With sph: slope of the floor, down along x; the space is drawn level")
                 .section("9")
-                .cost(Cost::Buffers),
+                .default_text("10; on a bed 0")
+                .cost(Cost::Buffers)
+                .unrecorded(),
             Parameter::new("sides", field!(Flow.sides))
                 .help("With sph: what bounds the lava along x and z")
                 .section("9")
@@ -125,6 +130,12 @@ impl Flow {
             Parameter::new("corrections", field!(Flow.corrections))
                 .range(Range::from(1.0).to(100.0))
                 .help("With sph: corrections of the density in a step")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("rock-renewal", field!(Flow.renewal_s))
+                .range(Range::from(0.1).to(1000.0))
+                .unit("seconds")
+                .help("With sph: time that the lava carries the rock before it is laid anew; two layings take turns")
                 .section("9")
                 .cost(Cost::Buffers),
         ];
@@ -137,6 +148,11 @@ impl Flow {
         let default = Flow::default();
         let of = |p: &Parameter<Flow>| (p.text(self) != p.text(&default)).then(|| (p.name, p.text(self)));
         Flow::declared().iter().find_map(of)
+    }
+
+    /// Slope of the floor in degrees, of a level bed or of a map's.
+    pub fn slope_deg(&self, is_level: bool) -> f32 {
+        self.slope_deg.unwrap_or(if is_level { 10.0 } else { 0.0 })
     }
 
     /// Distance of the particles at rest, metres: the cube root of their volume.

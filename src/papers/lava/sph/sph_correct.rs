@@ -3,9 +3,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from predicted places to corrected ones.
 ///
@@ -13,11 +12,12 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_correct(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     [predicted, corrected]: [&Arc<Buffer>; 2],
     factors: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-correct", "lava/sph-correct.comp", sort)
+    ground
+        .over_cells("sph-correct", "lava/sph-correct.comp")
         .with("predicted", predicted)
         .with("factors", factors)
         .with("corrected", corrected)

@@ -3,9 +3,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass; `factors` takes factor and density, `crowded` a 1 where a loop was cut off.
 ///
@@ -13,11 +12,12 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_density(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     predicted: &Arc<Buffer>,
     [factors, crowded]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
-    over_cells("sph-density", "lava/sph-density.comp", sort)
+    ground
+        .over_cells("sph-density", "lava/sph-density.comp")
         .with("predicted", predicted)
         .with("factors", factors)
         .with("crowded", crowded)

@@ -1,13 +1,15 @@
-//! Pass `sph-finish` (chapter 9): velocities from the places, both into the textures at the particles' numbers.
+//! Pass `sph-finish` (chapter 9): velocities from the places, both into the textures at the particles' numbers, and the way that the
+//! rock has been carried.
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::{Rock, over_cells};
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from the last places, temperatures and rates of strain into a state.
+/// Makes the pass from the last places, temperatures and rates of strain into a state; the rock is carried on from one state's into
+/// another's.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -16,6 +18,7 @@ pub fn sph_finish(
     sort: &Sort,
     [predicted, heat, change]: [&Arc<Buffer>; 3],
     state: &State,
+    (rock, [from, to]): (&Rock, [usize; 2]),
 ) -> Result<Pass, Error> {
     over_cells("sph-finish", "lava/sph-finish.comp", sort)
         .with("predicted", predicted)
@@ -24,5 +27,8 @@ pub fn sph_finish(
         .with("change", change)
         .with("positions", &state.positions)
         .with("velocities", &state.velocities)
+        .with("carried_before", &rock.states[from])
+        .with("carried_after", &rock.states[to])
+        .with("carried", &rock.by_cells)
         .build(shaders)
 }

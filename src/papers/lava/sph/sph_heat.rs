@@ -2,14 +2,18 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass; `pushed` holds the temperatures before, `heat` takes those after and the steepness of each face.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
-pub fn sph_heat(shaders: &ShaderLibrary, sort: &Sort, pushed: &Arc<Buffer>, heat: &Arc<Buffer>) -> Result<Pass, Error> {
-    over_cells("sph-heat", "lava/sph-heat.comp", sort).with("pushed", pushed).with("heat", heat).build(shaders)
+pub fn sph_heat(
+    shaders: &ShaderLibrary,
+    ground: Ground<'_>,
+    pushed: &Arc<Buffer>,
+    heat: &Arc<Buffer>,
+) -> Result<Pass, Error> {
+    ground.over_cells("sph-heat", "lava/sph-heat.comp").with("pushed", pushed).with("heat", heat).build(shaders)
 }

@@ -1,19 +1,27 @@
 //! Pass `sph-inflow` (section 9): the particles that leave the vent with a step, from where the start has them.
 
+use std::sync::Arc;
+
 use super::InflowConstants;
-use crate::gpu::{Error, Pass, ShaderLibrary};
+use crate::gpu::{Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 
-/// Makes the pass from the start into a state.
+/// Makes the pass from the start into a state, whose rock is carried by `carried`.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
-pub fn sph_inflow(shaders: &ShaderLibrary, start: &State, state: &State) -> Result<Pass, Error> {
+pub fn sph_inflow(
+    shaders: &ShaderLibrary,
+    start: &State,
+    state: &State,
+    carried: &Arc<ImageView>,
+) -> Result<Pass, Error> {
     Pass::compute("sph-inflow", "9", "lava/sph-inflow.comp")
         .constants::<InflowConstants>()
         .with("places", &start.positions)
         .with("motions", &start.velocities)
         .with("positions", &state.positions)
         .with("velocities", &state.velocities)
+        .with("carried", carried)
         .build(shaders)
 }

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from the last iterate of the velocities to places in metres.
 ///
@@ -12,11 +11,12 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_predict(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     velocities: &Arc<Buffer>,
     predicted: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-predict", "lava/sph-predict.comp", sort)
+    ground
+        .over_cells("sph-predict", "lava/sph-predict.comp")
         .with("from", velocities)
         .with("predicted", predicted)
         .build(shaders)

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from the velocities that viscosity leaves; `change` takes the rates in its fourth component.
 ///
@@ -12,11 +11,12 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_strain(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     velocities: &Arc<Buffer>,
     change: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-strain", "lava/sph-strain.comp", sort)
+    ground
+        .over_cells("sph-strain", "lava/sph-strain.comp")
         .with("from", velocities)
         .with("change", change)
         .build(shaders)

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change,
 /// `viscosities` those of the particles over the melt's where they are not all the same.
@@ -13,7 +12,7 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_viscosity(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     [from, to]: [&Arc<Buffer>; 2],
     [pushed, change]: [&Arc<Buffer>; 2],
     viscosities: Option<&Arc<Buffer>>,
@@ -22,7 +21,8 @@ pub fn sph_viscosity(
         None => "lava/sph-viscosity-constant.comp",
         Some(_) => "lava/sph-viscosity-basalt.comp",
     };
-    let pass = over_cells("sph-viscosity", shader, sort)
+    let pass = ground
+        .over_cells("sph-viscosity", shader)
         .with("pushed", pushed)
         .with("from", from)
         .with("to", to)

@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::super::parameters::Parameters;
 use super::super::start::Particles;
 use super::Scale;
+use super::bed::Bed;
 use super::parameters::Flow;
 use crate::scene::random::Random;
 
@@ -17,7 +18,12 @@ pub fn particles(parameters: &Parameters) -> Particles {
         block(parameters)
     };
     let count = positions.len();
-    Particles { positions, velocities: vec![Vec3::ZERO; count], temperatures_k: vec![heat.melt_k; count] }
+    Particles {
+        positions,
+        velocities: vec![Vec3::ZERO; count],
+        temperatures_k: vec![heat.melt_k; count],
+        bed: Bed::level(),
+    }
 }
 
 /// Places of a block in the space's first corner, layer by layer from the floor: as a lattice, shaken by a

@@ -1,10 +1,11 @@
-//! Pass `surface-temperature`: the particles' temperatures on the grid of the surface, for the colour of black bodies (chapter 9).
+//! Pass `surface-temperature`: the particles' temperatures and the way that they carried the rock on the grid of the surface (chapter 9).
 
 use std::sync::Arc;
 
 use ash::vk;
 
 use super::super::targets::{Context, FLOATS};
+use super::rock::Layings;
 use super::{FlowConstants, Sph};
 use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Pass};
 
@@ -12,8 +13,10 @@ use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Pass};
 pub struct SurfaceTemperature {
     pass: Pass,
     constants: FlowConstants,
-    /// Kelvin in red; 1 in green where any particle is near the column, 0 elsewhere.
+    /// Kelvin in red; 1 in green where any particle is near the column, 0 elsewhere; in blue the share of the rock's first laying.
     pub temperatures: Arc<ImageView>,
+    /// Metres along x and z that the rock of either laying has been carried.
+    pub carried: Arc<ImageView>,
 }
 
 impl SurfaceTemperature {
@@ -22,10 +25,12 @@ impl SurfaceTemperature {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, sph: &Sph, surface: &Arc<ImageView>) -> Result<Self, Error> {
-        let name = context.name("surface-temperatures");
-        let desc = ImageDesc::new_2d(name, FLOATS, surface.width(), surface.height());
-        let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
-        let temperatures = Image::new(context.device(), desc.usage(usage))?.view()?;
+        let stored = |name: &str| {
+            let desc = ImageDesc::new_2d(context.name(name), FLOATS, surface.width(), surface.height());
+            let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+            Image::new(context.device(), desc.usage(usage))?.view()
+        };
+        let (temperatures, carried) = (stored("surface-temperatures")?, stored("surface-carried")?);
         let [xs, ys, zs] = &sph.sort.places;
         let pass = Pass::compute("surface-temperature", "9", "lava/surface-temperature.comp")
             .constants::<FlowConstants>()
@@ -37,15 +42,21 @@ impl SurfaceTemperature {
             .with("heat", &sph.heat)
             .with("normal_height", surface)
             .with("temperatures", &temperatures)
+            .with("carried", &sph.rock.by_cells)
+            .with("surface_carried", &carried)
             .build(context.shaders)?;
-        Ok(SurfaceTemperature { pass, constants: sph.constants, temperatures })
+        Ok(SurfaceTemperature { pass, constants: sph.constants, temperatures, carried })
     }
 
+    /// After so many steps.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, sph: &Sph, steps: u32) -> Result<(), Error> {
+        let Layings { share, .. } = sph.rock.layings(steps.saturating_sub(1));
+        let constants = FlowConstants { share, ..self.constants };
         frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&self.constants).threads(self.temperatures.width(), self.temperatures.height(), 1);
+            dispatch.constants(&constants).threads(self.temperatures.width(), self.temperatures.height(), 1);
         })
     }
 }

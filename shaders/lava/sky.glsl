@@ -1,0 +1,9 @@
+// Daylight on a fluid and its ground: a sky that is brightest low above one side, so that folds cast their own shade. In the
+// display's values, of a white surface.
+
+const vec3 BRIGHTEST = vec3(-0.62, 0.55, 0.56);
+
+vec3 sky_on(vec3 normal) {
+    float lit = 0.5 + 0.5 * dot(normal, BRIGHTEST);
+    return vec3(0.8, 0.9, 1.1) * lit * lit;
+}

@@ -1,0 +1,120 @@
+//! Chapter 3's kinds of lava as presets: small flows of basalt out of a vent. Viscosities are those of Giordano and Dingwell's fit (2003) at
+//! the temperature of eruption; heat is faster than rock's, so that minutes of cooling pass in seconds.
+
+use glam::Vec3;
+
+use super::parameters::{Parameters, SurfaceKind};
+use super::sph::heat::{Heat, Rheology};
+use super::sph::parameters::{Flow, Simulation};
+use super::sph::vent::Vent;
+use crate::scene::Camera;
+
+/// The fluid's own surface in black bodies' colours, from a camera.
+fn basalt(eye: Vec3, target: Vec3, exposure: f32, flow: Flow) -> Parameters {
+    Parameters {
+        simulation: Simulation::Sph,
+        surface: SurfaceKind::Crossing,
+        border_m: 0.0,
+        is_blackbody: true,
+        camera: Camera { eye, target, ..Parameters::default().camera },
+        exposure,
+        flow,
+        ..Parameters::default()
+    }
+}
+
+fn heat(melt_k: f32, capacity_j_kgk: f32, conductivity_w_mk: f32, crust_pa_s: f32) -> Heat {
+    Heat { melt_k, capacity_j_kgk, conductivity_w_mk, rheology: Rheology::Basalt, crust_pa_s, ..Heat::default() }
+}
+
+/// Section 3.2: 1,150 degrees Celsius, very fluid, a sheet a hand thick that chills after a metre or two.
+pub fn pahoehoe() -> Parameters {
+    let flow = Flow {
+        block_m: Vec3::new(1.0, 0.3, 1.0),
+        viscosity_pa_s: 122.0,
+        slope_deg: Some(10.0),
+        renewal_s: 6.0,
+        heat: heat(1423.0, 12.0, 20.0, 1000.0),
+        vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2 },
+        ..Flow::default()
+    };
+    Parameters {
+        space_m: Vec3::new(3.2, 0.5, 1.6),
+        particles: 4000,
+        radius_m: 0.09,
+        density: [96, 24, 48],
+        splats: [320, 160],
+        splat_radius_m: 0.02,
+        rock_tile_m: 0.8,
+        ..basalt(Vec3::new(2.6, 1.1, 1.9), Vec3::new(1.1, 0.0, 0.75), 3.0, flow)
+    }
+}
+
+/// Section 3.2: the same lava under a skin that stiffens, halted by a wall.
+pub fn ropy() -> Parameters {
+    let flow = Flow {
+        block_m: Vec3::new(0.5, 0.2, 0.6),
+        viscosity_pa_s: 122.0,
+        slope_deg: Some(14.0),
+        renewal_s: 20.0,
+        heat: heat(1423.0, 12.0, 6.0, 2500.0),
+        ..Flow::default()
+    };
+    Parameters {
+        space_m: Vec3::new(1.2, 0.35, 0.6),
+        particles: 4000,
+        radius_m: 0.05,
+        density: [96, 28, 48],
+        splats: [240, 120],
+        splat_radius_m: 0.01,
+        rock_tile_m: 0.5,
+        ..basalt(Vec3::new(1.5, 0.75, 0.95), Vec3::new(0.75, 0.05, 0.3), 6.0, flow)
+    }
+}
+
+/// Section 3.2: the same lava, slow, under a crust.
+pub fn toes() -> Parameters {
+    let flow = Flow {
+        block_m: Vec3::new(0.5, 0.2, 0.8),
+        viscosity_pa_s: 122.0,
+        slope_deg: Some(4.0),
+        renewal_s: 20.0,
+        heat: heat(1423.0, 12.0, 10.0, 1200.0),
+        vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
+        ..Flow::default()
+    };
+    Parameters {
+        space_m: Vec3::new(1.8, 0.4, 1.4),
+        particles: 4000,
+        radius_m: 0.06,
+        density: [90, 20, 70],
+        splats: [270, 210],
+        splat_radius_m: 0.012,
+        rock_tile_m: 0.5,
+        time_step_s: 1.0 / 20.0,
+        ..basalt(Vec3::new(1.8, 0.85, 1.4), Vec3::new(0.65, 0.0, 0.65), 6.0, flow)
+    }
+}
+
+/// Section 3.3: 1,050 degrees Celsius, more viscous, metres thick and yet faster.
+pub fn aa() -> Parameters {
+    let flow = Flow {
+        block_m: Vec3::new(3.0, 1.5, 2.0),
+        viscosity_pa_s: 941.0,
+        slope_deg: Some(18.0),
+        renewal_s: 6.0,
+        heat: heat(1323.0, 6.0, 60.0, 9000.0),
+        vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
+        ..Flow::default()
+    };
+    Parameters {
+        space_m: Vec3::new(11.0, 2.5, 6.0),
+        particles: 5000,
+        radius_m: 0.19,
+        density: [120, 48, 66],
+        splats: [330, 180],
+        splat_radius_m: 0.06,
+        rock_tile_m: 2.0,
+        ..basalt(Vec3::new(9.5, 3.2, 6.4), Vec3::new(3.6, 0.3, 2.9), 6.0, flow)
+    }
+}

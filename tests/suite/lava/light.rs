@@ -1,0 +1,118 @@
+//! The lava's light on what lies beside it.
+
+use std::sync::Arc;
+
+use fumarole::gpu::Device;
+use fumarole::papers::lava::reference::light;
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceKind, Variant};
+use fumarole::scene::{Camera, shapes};
+use glam::{DVec3, Mat4, Vec3};
+
+use super::fluid::{flowing, list};
+use super::scene::{draw, shaders, texels};
+use crate::common::gpu_test;
+
+fn hot() -> Parameters {
+    Parameters {
+        is_blackbody: true,
+        surface: SurfaceKind::Crossing,
+        density: [40, 16, 24],
+        radius_m: 0.15,
+        border_m: 0.0,
+        ..flowing()
+    }
+}
+
+/// With a ball 0.3 m across, and particles as hot as that.
+fn with_ball(device: &Arc<Device>, parameters: &Parameters, middle: Vec3, kelvin: f32) -> Lava {
+    let sphere = shapes::sphere(48, 48);
+    let scale = 0.3 / sphere.bounds().diagonal().max_element();
+    let ball = sphere.transformed(&(Mat4::from_translation(middle) * Mat4::from_scale(Vec3::splat(scale))));
+    let mut particles = Particles::of(parameters);
+    particles.temperatures_k.fill(kelvin);
+    Lava::new(&shaders(device), "test", Variant::GpuDriven, parameters, &particles, Rock::built_in(), &[ball]).unwrap()
+}
+
+/// A diffuse surface's light from a small one that shines, over what it would be in a sky as bright all over.
+fn of_a_column(way: DVec3, [facing, normal]: [DVec3; 2], area: f64) -> f64 {
+    let squared = way.length_squared();
+    let seen = way.dot(normal).max(0.0) * (-way.dot(facing)).max(0.0) / squared;
+    seen * area / (std::f64::consts::PI * squared)
+}
+
+/// At some places the lamps give as much light as all columns of the surface do that have lava.
+#[test]
+fn lamps_shine_as_the_surface_does() {
+    gpu_test(|device| {
+        let parameters = hot();
+        let mut lava = with_ball(device, &parameters, Vec3::new(1.2, 0.7, 0.6), 1423.0);
+        draw(device, &mut lava, 6);
+        let floats: Vec<f32> = list(device, &lava.lava_light.as_ref().unwrap().lamps);
+        let lamps: Vec<[f64; 12]> = floats.as_chunks::<12>().0.iter().map(|lamp| lamp.map(f64::from)).collect();
+        assert_eq!(lamps[0][7] as usize, lamps.len());
+        let surface: Vec<[f32; 4]> = texels(device, &lava.normal_height.surface);
+        let heat: Vec<[f32; 4]> = texels(device, &lava.surface_temperature.as_ref().unwrap().temperatures);
+        let column_m = DVec3::new(2.0 / 40.0, 0.0, 1.2 / 24.0);
+        // Red of the hottest is the brightest primary.
+        let hottest = light(1423.0)[0];
+        let spacing = parameters.flow.spacing_m(600);
+        for (place, normal) in [
+            (DVec3::new(0.4, 1.4, 0.4), DVec3::NEG_Y),
+            (DVec3::new(1.5, 0.5, 0.5), DVec3::NEG_X),
+            (DVec3::new(0.9, 0.9, 0.9), DVec3::new(-1.0, -1.0, -1.0).normalize()),
+        ] {
+            let mut expected = 0.0;
+            for (at, (texel, heat)) in surface.iter().zip(&heat).enumerate() {
+                let [x, y, z, height] = texel.map(f64::from);
+                if height <= 0.25 * spacing {
+                    continue;
+                }
+                let middle = DVec3::new((at % 40) as f64 + 0.5, 0.0, (at / 40) as f64 + 0.5) * column_m;
+                let area = column_m.x * column_m.z / y.max(0.05);
+                let glow = light(f64::from(heat[0]))[0] / hottest;
+                let way = middle.with_y(height) - place;
+                expected += glow * of_a_column(way, [DVec3::new(x, y, z), normal], area);
+            }
+            let of_lamp = |lamp: &[f64; 12]| {
+                let way = DVec3::new(lamp[0], lamp[1], lamp[2]) - place;
+                lamp[8] * of_a_column(way, [DVec3::new(lamp[4], lamp[5], lamp[6]), normal], lamp[3])
+            };
+            let found: f64 = lamps.iter().filter(|lamp| lamp[3] > 0.0).map(of_lamp).sum();
+            println!("{place}: {found} {expected}");
+            assert!(expected > 0.003 && (found / expected - 1.0).abs() < 0.2, "{place}: {found} {expected}");
+        }
+    });
+}
+
+/// A ball over hot lava is orange below and grey above; over lava that has gone cold it is grey all over.
+#[test]
+fn a_ball_over_lava_is_lit_from_below() {
+    gpu_test(|device| {
+        let redness = |melt_k: f32| {
+            let parameters = Parameters {
+                shading: Shading::Lava,
+                camera: Camera {
+                    eye: Vec3::new(0.4, 0.75, 2.2),
+                    target: Vec3::new(0.4, 0.75, 0.4),
+                    vertical_fov_rad: 0.3,
+                    ..flowing().camera
+                },
+                ..hot()
+            };
+            let mut lava = with_ball(device, &parameters, Vec3::new(0.4, 0.75, 0.4), melt_k);
+            draw(device, &mut lava, 0);
+            let pixels: Vec<[u8; 4]> = texels(device, &lava.splatting.normalisation.picture);
+            // The ball reaches from a quarter to three quarters of the middle column.
+            let (width, height) = (parameters.width as usize, parameters.height as usize);
+            let of = |row: usize| {
+                let [red, _, blue, _] = pixels[row * width + width / 2];
+                f64::from(red) / f64::from(blue.max(1))
+            };
+            let (upper, lower) = (of(height / 3), of(height * 7 / 10));
+            println!("{melt_k} K: {upper} above, {lower} below");
+            (upper, lower)
+        };
+        let (hot, cold) = (redness(1423.0), redness(700.0));
+        assert!(hot.1 > 1.5 * hot.0 && hot.1 > 1.3 * cold.1, "{hot:?} {cold:?}");
+    });
+}
