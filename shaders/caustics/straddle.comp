@@ -32,8 +32,8 @@ bool is_hidden(vec2 place, int layer, float height, vec2 slope, float top) {
     vec2 path = abs(back) * (top - height);
     int steps = int(min(max(path.x, path.y), float(MOST_STEPS)));
     int from = 0;
-    // The way leaves the texel halfway through its first step.
-    float before = height + 0.5 * (top - height) / float(max(steps, 1));
+    // The way leaves the texel halfway through its first step, or not at all.
+    float before = steps > 0 ? height + 0.5 * (top - height) / float(steps) : top;
     int room = layer;
     if (layer > 0 && room_at(ivec2(floor(place)), before) != layer) {
         return true;

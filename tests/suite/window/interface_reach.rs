@@ -54,6 +54,9 @@ fn cell(harness: &Harness<'_, Interface>, head: &str, pass: &str) -> Vec<String>
     let (column, row) = (place(head), place(pass));
     let root = harness.root();
     let inside = root.children_recursive().filter(|node| {
+        if !node.accesskit_node().has_bounds() {
+            return false;
+        }
         let rect = node.rect();
         (rect.left() - column.left()).abs() < 1.0 && row.y_range().contains(rect.center().y)
     });

@@ -165,6 +165,7 @@ fn a_target_is_drawn_as_its_controls_say() {
         window.wait("the target", |window| window.try_image("caustics-map"));
         window.click("ramp");
         window.click("grey");
+        window.wait("the list is gone", |window| (!window.has("diverging")).then_some(()));
 
         // From the smallest to the largest, then brighter, then of a range that was typed.
         let on_screen = |window: &mut Window<'_>, what: &str, range: (f64, f64), stops: f64| {
@@ -176,7 +177,6 @@ fn a_target_is_drawn_as_its_controls_say() {
         };
         let (low, high) = map.ends();
         window.click("all");
-        display.point(ASIDE);
         on_screen(&mut window, "greys from end to end", (low, high), 0.0);
         type_into(&mut window, "exposure ", "1.5");
         on_screen(&mut window, "greys after 1.5 stops", (low, high), 1.5);
@@ -222,12 +222,22 @@ fn a_histogram_has_the_counts_of_the_values() {
         display.key(F4);
         window.click("caustics-map");
         window.wait("the target", |window| window.try_image("caustics-map"));
-        // The lines of the range's ends would be bars.
+        // The lines of the range's ends would be bars, and words at the pointer lie over them.
         window.click("all");
+        let (_, high) = map.ends();
+        window.wait("the range", |window| {
+            let (end, _) = beginning_with(window, "to ")?;
+            let end: f64 = end["to ".len()..].parse().ok()?;
+            ((end - high).abs() < 1e-3 * high).then_some(())
+        });
         let counts = map.histogram();
         for is_logarithmic in [false, true] {
             if is_logarithmic {
                 window.click("log");
+                window.wait("logarithms", |window| {
+                    let is_on = |control: &serde_json::Value| control["label"] == "log" && control["is_on"] == true;
+                    window.controls().iter().any(is_on).then_some(())
+                });
             }
             display.point(ASIDE);
             let height = |count: u64| if is_logarithmic { (count as f64 + 1.0).ln() } else { count as f64 };
