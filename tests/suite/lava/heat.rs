@@ -221,7 +221,7 @@ fn a_slab_cools_as_the_heat_equation_says() {
 }
 
 /// Steady flow of a Bingham fluid down a slope, 12 particles deep: slower by its plug, whose viscosity is the largest there is.
-/// Particles that lie in no lattice feel a rate of strain where there is none, so that the plug creeps.
+/// The rate of strain is exact of linear speeds alone, so that particles that are shaken strain the plug a little, and it creeps.
 #[test]
 fn a_film_of_crust_has_a_bingham_fluids_speed() {
     gpu_test(|device| {
