@@ -114,13 +114,13 @@ fn light_shines_below_what_hides_the_floor() {
             }
             println!("{name}: {leaks} of {dark} texels in shadow are lit, {missed} of {lit} in light are not");
             assert!(dark > 1000 && leaks * 50 <= dark, "{name}: {leaks} of {dark}");
-            assert!(lit > 100 && missed * 50 <= lit, "{name}: {missed} of {lit}");
+            assert!(lit > 200 && missed * 50 <= lit, "{name}: {missed} of {lit}");
             // The first surface has its light as without further layers, but where light comes from below the plate.
             let alone = Drawing::of(device, Variant::Hit, &Parameters { layers: 1, ..parameters }, from_ref(&receiver));
             let (found, expected) = (drawing.target("caustics-map"), alone.target("caustics-map"));
             let off = found.iter().zip(expected).filter(|(a, b)| (*a - *b).abs() > 0.01 * b.abs().max(0.1)).count();
             println!("{name}: {off} of {} texels of the first surface differ", found.len());
-            assert!(off * 50 <= found.len(), "{name}: {off}");
+            assert!(off * 100 <= found.len(), "{name}: {off}");
         }
     });
 }
@@ -172,8 +172,8 @@ fn hit_lights_the_inside_of_a_jar_as_photons_do() {
                 held.len(),
                 correlation(&shown(&one), &shown(&other))
             );
-            assert!(lit > 100 && like > 0.9, "{light:?}: {lit} {like}");
-            assert!((flux - 1.0).abs() < 0.1, "{light:?}: {flux}");
+            assert!(lit > 100 && like > 0.93, "{light:?}: {lit} {like}");
+            assert!((flux - 1.0).abs() < 0.08, "{light:?}: {flux}");
         }
     });
 }
@@ -185,19 +185,17 @@ fn straight_light_finds_nothing_hidden() {
         let plain = Parameters { waves: FLAT, ..parameters(OVERHEAD) };
         let layered = Parameters { layers: 4, ..plain.clone() };
         let [one, several] = [&plain, &layered].map(|p| Drawing::of(device, Variant::Hit, p, &[jar()]));
+        // Rays are followed farther down, which changes the last digits.
         let difference = compare(&one.picture, &several.picture, None).unwrap();
-        assert!(difference.mean < 0.01, "{difference:?}");
-        // Of the texels at the mouth's edge both surfaces have a part; rays are followed farther down, which changes the last digits.
+        assert!(difference.max < 1.0 && difference.mean < 1e-3, "{difference:?}");
         let maps = one.target("caustics-map").iter().zip(several.target("caustics-map"));
-        let off = maps.filter(|(a, b)| (*a - *b).abs() > 1e-3).count();
-        assert!(off < 300, "{off} texels differ");
-        let layer = 128 * 128;
-        let (heights, light) = (several.target("hidden-position-map"), several.target("hidden-caustics-map"));
-        let lit = filled(&heights[..layer], 2).into_iter().filter(|&texel| light[texel] > 0.0).count();
-        let held: Vec<usize> = heights.chunks_exact(layer).map(|l| l.iter().filter(|&&h| h > -1e29).count()).collect();
-        println!("{off} texels of the first surface differ, {lit} of the second are lit, of {held:?} in each layer");
-        assert!(lit == 0, "{lit} texels are lit");
-        assert!(held.len() == 3 && held[0] > 1000 && held[1..].iter().all(|&count| count < 20), "{held:?}");
+        let apart = maps.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 1e-3, "{apart}");
+        assert!(several.target("hidden-caustics-map").iter().all(|&light| light == 0.0));
+        let heights = several.target("hidden-position-map");
+        let held: Vec<usize> =
+            heights.chunks_exact(128 * 128).map(|layer| layer.iter().filter(|&&h| h > -1e29).count()).collect();
+        assert!(held[0] > 1000 && held[1..] == [0, 0], "{held:?}");
     });
 }
 
@@ -216,10 +214,10 @@ fn a_picture_shows_the_light_below_an_overhang() {
             [&plain, &layered].map(|p| Drawing::of(device, Variant::Hit, p, from_ref(&receiver)).picture);
         let (mut brighter, mut darker) = (0, 0);
         for (a, b) in one.pixels().chunks_exact(4).zip(several.pixels().chunks_exact(4)) {
-            brighter += u32::from(b[0] > a[0].saturating_add(4));
-            darker += u32::from(a[0] > b[0].saturating_add(4));
+            brighter += u32::from(b[0] > a[0].saturating_add(8));
+            darker += u32::from(a[0] > b[0].saturating_add(8));
         }
         println!("{brighter} pixels are brighter, {darker} darker");
-        assert!(brighter > 30 && darker * 10 <= brighter, "{brighter} {darker}");
+        assert!(brighter > 50 && darker * 10 <= brighter, "{brighter} {darker}");
     });
 }
