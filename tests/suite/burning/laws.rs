@@ -108,7 +108,7 @@ fn by_the_natural_look_the_same_triangles_are_drawn_in_the_order_of_caches() {
     gpu_test(|device| {
         let parameters = Parameters { look: Look::Natural, heat: Some(Heat::Air), collapse: false, ..quick() };
         let mut fire = Fire::new(device, Variant::Shell, &parameters, &ball());
-        for number in [0, 80, 140] {
+        for number in [0, 60, 80, 140] {
             fire.frame(number);
             let state = fire.state();
             let corners = fire.paper.model().lattice.finest();
@@ -116,7 +116,7 @@ fn by_the_natural_look_the_same_triangles_are_drawn_in_the_order_of_caches() {
             let own: Vec<[u32; 3]> = left.map(|triangle| corners[triangle]).collect();
             let stream: Vec<[u32; 3]> = fire.read(&fire.paper.buffers().stream);
             let drawn = &stream[..state.counts.drawn_triangles as usize];
-            assert!(drawn != own, "{number}: in an order of its own");
+            assert!(drawn != own || own.is_empty(), "{number}: in an order of its own");
             let sorted = |triangles: &[[u32; 3]]| {
                 let mut triangles = triangles.to_vec();
                 triangles.sort_unstable();

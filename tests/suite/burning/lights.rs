@@ -203,8 +203,8 @@ fn a_layer_of_fewer_pixels_is_close_to_that_of_all() {
             };
             let whole = pictured(1);
             let [half, eighth] = [2, 8].map(|scale| compare(&whole, &pictured(scale), None).unwrap());
-            assert!(half.mean > 0.0 && half.mean < 1.5 && half.p99 < 40.0, "{half:?}");
-            assert!(eighth.mean > half.mean && eighth.mean < 6.0, "{eighth:?}");
+            assert!(half.mean > 0.0 && half.mean < 2.0 && half.p99 < 50.0, "{half:?}");
+            assert!(eighth.mean > half.mean && eighth.mean < 10.0, "{eighth:?}");
         }
     });
 }
