@@ -24,6 +24,7 @@ pub struct Fluid {
 
 /// A wall from a place.
 pub(super) struct Wall {
+    /// Metres from the place to it.
     pub(super) distance: f64,
     /// Away from it.
     pub(super) normal: DVec3,
