@@ -161,7 +161,7 @@ fn a_shader_with_another_interface_is_refused_as_input() {
     let tail = tail.replacen("void main() {", "void main() {\n    if (more.x > 2.0) discard;", 1);
     fs::write(&cast, format!("{head}\n{more}{tail}")).unwrap();
     let program = caustics("render --quiet --shader-dir").arg(&shaders).tiny();
-    program.run().refused(2, &["shaders", "cast.frag", "more", "keep the inputs"]);
+    program.run().refused(2, &["shaders", "cast-one.frag", "more", "keep the inputs"]);
 }
 
 #[test]
