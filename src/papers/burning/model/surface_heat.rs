@@ -228,7 +228,7 @@ mod tests {
         let ways = ways((&positions, &triangles), &[], &[source], DVec3::ZERO);
         for (way, place) in ways.iter().zip(&positions) {
             let straight = f64::from(place.distance(source));
-            assert!(*way > 0.999 * straight && *way < straight + 1.1 / 40.0, "{place}: {way}, {straight}");
+            assert!(*way >= 0.999 * straight && *way < straight + 1.1 / 40.0, "{place}: {way}, {straight}");
         }
     }
 
@@ -312,6 +312,7 @@ mod tests {
             (0..3).flat_map(|part| triangles.iter().map(move |t| t.map(|vertex| vertex + part * count))).collect();
         let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
         let last = ways[2 * count as usize + 20];
-        assert!((last - 3.6).abs() < 0.02, "three sheets and two gaps: {last}");
+        // A voxel is as wide as a gap here, and all that is in it has its heat from one vertex, aside of the straight way.
+        assert!(last > 3.59 && last < 1.07 * 3.6, "three sheets and two gaps: {last}");
     }
 }

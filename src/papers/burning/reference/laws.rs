@@ -74,7 +74,9 @@ fn a_solid_stays_one_and_shrinks() {
 #[test]
 fn wax_comes_to_rest_lower_and_above_the_floor() {
     let (positions, triangles) = sphere(3);
-    let scene = Scene::around(Model::new(&positions, &triangles, 0, [6, 7, 8]), Variant::Melting);
+    let mut scene = Scene::around(Model::new(&positions, &triangles, 0, [6, 7, 8]), Variant::Melting);
+    // The text's wax flows until its edges have met the law; ours sets before the last of them do.
+    scene.constants.setting_s = None;
     let center = |state: &State| {
         let parts = scene.model.triangles.iter().map(|t| {
             let [a, b, c] = t.vertices.map(|v| state.positions[v]);

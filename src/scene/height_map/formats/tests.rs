@@ -239,7 +239,7 @@ fn files_that_cannot_be_read_are_named() {
     for (name, expected) in [
         ("missing.hgt", "cannot read"),
         ("missing.bil", "cannot read"),
-        ("folder.tif", "it is not a regular file; name a height map file"),
+        ("folder.tif", "it has no .hgt file; name a folder of SRTM tiles, or a file"),
         ("empty.hgt", "its size is 0 bytes; an SRTM tile has one of"),
         ("empty.asc", "the file ends before its first height"),
         ("empty.tif", "its content is neither TIFF nor PNG"),
