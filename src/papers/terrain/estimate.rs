@@ -1,6 +1,7 @@
 //! Sizes that follow from the parameters, the maps and the objects.
 
 use super::mesh::{BLOCK_INDICES, MESH_SIDE};
+use super::page_table::{PageTable, TILE};
 use super::parameters::{Interpolation, Lod, Parameters, Variant};
 use super::pyramid::Shape;
 use super::quadtree::PATCH_SIDE;
@@ -34,7 +35,11 @@ impl Parameters {
             let sample = if matches!(samples.samples(), Samples::Float(_)) { NUMBER } else { 0.5 * NUMBER };
             let whole = f64::from(width) * f64::from(height) * sample * (1.0 + bounds);
             if variant == Variant::TiledCompute {
-                pools += whole.min(self.tile_bytes() as f64 / inputs.maps.len() as f64);
+                let tile = f64::from(TILE * TILE) * sample;
+                let most = self.tile_bytes() as f64 / inputs.maps.len() as f64 / tile;
+                let (columns, rows) = PageTable::new(shape, self.interpolation, most as usize).pool();
+                // Of the pool, and the one that is on its way to it.
+                pools += (f64::from(columns) * f64::from(rows) + 1.0) * tile;
             } else {
                 levels += whole;
             }
