@@ -3,8 +3,9 @@
 // map that is as high there as the coarser texel, and every bound of a level holds for it as it does for the data. A
 // drawing that marks what it reads tells the host what to bring.
 
-const int TILE_BITS = 7; // src/papers/terrain/page_table.rs has them, too
+const int TILE_BITS = 7; // src/papers/terrain/page_table.rs has it, too
 const int TILE = 1 << TILE_BITS;
+
 layout(set = 0, binding = 1) uniform utexture2D pool;
 
 layout(set = 0, binding = 5, std430) readonly buffer Pages {
@@ -31,8 +32,9 @@ float value_in(int is_lowest, int shift, ivec2 texel) {
     int page = first_page(shift) + (tile.y << (page_bits - min(shift, page_bits))) + tile.x;
     page += is_lowest * min(shift, 1) * (first_page(map.top) + 1);
     uint entry = pages.list[page];
-    // True in drawings that are not measured; of the two values a driver may make a shader each.
-    if (terrain.marks_tiles != 0) {
+    // True in drawings that are not measured. No entry has its uppermost bit, which a driver cannot know: lavapipe makes a shader
+    // anew for each drawing where a block alone decides.
+    if (terrain.marks_tiles > int(entry >> 31)) {
         asked.list[page] = 1u;
     }
     int up = int(entry >> 24);
