@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
 
-layout(set = 0, binding = 76, std430) buffer Lying {
-    uint lying[];
+layout(set = 0, binding = 76, std430) buffer Balls {
+    uint balls[];
 };
 
 layout(set = 0, binding = 70, std430) buffer Contacts {
@@ -21,7 +21,9 @@ void main() {
     if (thread < MOST_PARTS * WORDS) {
         contacts[thread] = thread % WORDS < DIRECTIONS ? -FARTHEST : FARTHEST;
     }
-    if (thread < 65536u) {
-        lying[thread] = 0xffffffffu;
+    if (thread < ENTRIES) {
+        for (uint layer = 0u; layer < LAYERS; layer++) {
+            balls[layer * ENTRIES + thread] = 0xffffffffu;
+        }
     }
 }

@@ -1,6 +1,6 @@
 #version 450
 
-// The directions and gaps of the meetings that were found: one thread each, before parts move. Whether they do so in the
+// What the parts meet, by the meetings that were found: one thread each, before parts move. Whether they do so in the
 // next tick is not known yet.
 
 layout(local_size_x = 64) in;
@@ -39,7 +39,7 @@ layout(set = 0, binding = 70, std430) readonly buffer Contacts {
 };
 
 layout(set = 0, binding = 77, std430) buffer Met {
-    vec4 met[];
+    Obstacle met[];
 };
 
 layout(set = 0, binding = 97, std430) buffer Moving {
@@ -58,6 +58,9 @@ void main() {
     int vertex = contacts[part * WORDS + GAPS + MEETINGS + thread % MEETINGS];
     if (vertex != FARTHEST) {
         Meeting meeting = meeting_of(part, position_of(uint(vertex)));
-        met[thread] = vec4(meeting.toward, meeting.gap);
+        Part other = parts[min(part_of[meeting.vertex], MOST_PARTS - 1u)];
+        vec3 center = turned(other.orientation, other.center) + other.offset;
+        vec3 velocity = other.velocity + cross(other.spin, position_of(meeting.vertex) - center);
+        met[thread] = Obstacle(meeting.toward, meeting.gap, velocity);
     }
 }

@@ -2,9 +2,11 @@
 
 // A tick of the rigid parts. What stands with its weight over what touches the ground stays; anything else falls: gravity
 // by semi-implicit Euler, then at each contact the impulses, one after the other, that keep it from passing the ground
-// or a part that lies still within the tick and that rub along it (Guendelman et al. 2003, without bouncing). An impulse that stops what
-// approaches takes energy and never gives any, for nothing is pushed out of the part; the spin goes on with its
-// angular momentum, and with less where turning would have given energy. Forces follow from the moments of 3.5's weight.
+// or another part within the tick and that rub along it (Guendelman et al. 2003, without bouncing). Another part goes on
+// as in the last tick meanwhile: what it runs away with is not caught up, and where it comes nearer it is stopped by its
+// own contact and drives nothing on. An impulse that stops what approaches takes energy and never gives any, for nothing
+// is pushed out of the part; the spin goes on with its angular momentum, and with less where turning would have given
+// energy. Forces follow from the moments of 3.5's weight.
 
 layout(local_size_x = 64) in;
 
@@ -46,7 +48,7 @@ layout(set = 0, binding = 70, std430) readonly buffer Contacts {
 };
 
 layout(set = 0, binding = 77, std430) readonly buffer Met {
-    vec4 met[]; // direction from what is met, gap
+    Obstacle met[];
 };
 
 layout(set = 0, binding = 97, std430) buffer Moving {
@@ -159,7 +161,8 @@ void main() {
     vec3 spin = part.spin;
     vec3 arms[CONTACTS + MEETINGS];
     vec3 normals[CONTACTS + MEETINGS];
-    float least[CONTACTS + MEETINGS]; // velocity along the normal that just reaches what is met
+    vec3 moved[CONTACTS + MEETINGS]; // velocity of what is met
+    float least[CONTACTS + MEETINGS]; // velocity along the normal that just reaches it
     uint count = 0u;
     for (uint k = 0u; k < CONTACTS + MEETINGS; k++) {
         bool is_ground = k < CONTACTS;
@@ -171,9 +174,11 @@ void main() {
             vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
             vec3 position = turned(part.orientation, place) + part.offset;
             arms[count] = position - at;
-            vec4 meeting = met[index * MEETINGS + octant];
-            normals[count] = is_ground ? vec3(0.0, 1.0, 0.0) : meeting.xyz;
-            least[count] = -max(is_ground ? position.y - constants.floor_y : meeting.w, 0.0) / TICK_S;
+            Obstacle obstacle = met[index * MEETINGS + octant];
+            normals[count] = is_ground ? vec3(0.0, 1.0, 0.0) : obstacle.toward;
+            moved[count] = is_ground ? vec3(0.0) : obstacle.velocity;
+            float gap = max(is_ground ? position.y - constants.floor_y : obstacle.gap, 0.0);
+            least[count] = min(dot(moved[count], normals[count]), 0.0) - gap / TICK_S;
             count++;
         }
     }
@@ -189,7 +194,7 @@ void main() {
                 float impulse = (least[k] - nearing) / yielding(inverse_inertia, r, n);
                 velocity += impulse * n;
                 spin += inverse_inertia * cross(r, impulse * n);
-                u = velocity + cross(spin, r);
+                u = velocity + cross(spin, r) - moved[k];
                 u -= dot(u, n) * n;
                 float sliding = length(u);
                 if (sliding > 1e-6) {

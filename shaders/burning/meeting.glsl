@@ -1,8 +1,17 @@
-// Where a part that falls meets one that lies still: vertices as balls. A table by a hash of a vertex's cell holds the
-// lowest vertex there of what lies still.
+// Where a part that falls meets another: vertices as balls. A table by a hash of a vertex's cell holds the lowest vertex
+// there, in layers: of what lies still, and of what falls of parts of even and of odd numbers, so that a part's own balls
+// hide few of the others'.
 
-const uint ENTRIES = 65536u;
+#include "burning/contacts.glsl"
+
 const uint MEETINGS = 8u; // the deepest in each octant of directions
+
+// A ball that a part meets.
+struct Obstacle {
+    vec3 toward; // from it, a unit vector
+    float gap; // diagonals, below 0 where the balls overlap
+    vec3 velocity; // of it, diagonals a second
+};
 
 // Diameter of the balls, and width of the cells.
 float ball_width() {
@@ -13,11 +22,11 @@ ivec3 cell_at(vec3 position) {
     return ivec3(floor(position / ball_width()));
 }
 
-uint entry_of(ivec3 cell) {
+uint entry_of(uint layer, ivec3 cell) {
     uint h = uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu;
     h ^= h >> 15u;
     h *= 0x846ca68bu;
-    return (h ^ (h >> 16u)) % ENTRIES;
+    return layer * ENTRIES + (h ^ (h >> 16u)) % ENTRIES;
 }
 
 uint octant_of(vec3 v) {

@@ -2,8 +2,8 @@
 
 #include "burning/meeting.glsl"
 
-layout(set = 0, binding = 76, std430) readonly buffer Lying {
-    uint lying[]; // vertex, NONE without any
+layout(set = 0, binding = 76, std430) readonly buffer Balls {
+    uint balls[]; // vertex, NONE without any
 };
 
 struct Meeting {
@@ -23,9 +23,10 @@ Meeting meeting_of(uint part, vec3 position) {
     Meeting nearest = Meeting(NONE, vec3(0.0), 0.0);
     float width = ball_width();
     ivec3 middle = cell_at(position);
-    for (int i = 0; i < 27; i++) {
-        ivec3 cell = middle + ivec3(i % 3, (i / 3) % 3, i / 9) - 1;
-        uint other = lying[entry_of(cell)];
+    for (int i = 0; i < 27 * int(LAYERS); i++) {
+        int at = i % 27;
+        ivec3 cell = middle + ivec3(at % 3, (at / 3) % 3, at / 9) - 1;
+        uint other = balls[entry_of(uint(i / 27), cell)];
         if (other != NONE) {
             vec3 apart = position - position_of(other);
             float distance_apart = length(apart);

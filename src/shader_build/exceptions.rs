@@ -9,7 +9,7 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/block-weights-random.comp", "atomics: vertices are counted by block"),
     ("burning/falling-contacts-heights.comp", "atomics: the lowest and the farthest vertex are found"),
     ("burning/falling-contacts-vertices.comp", "an atomic: the first of several vertices is found"),
-    ("burning/falling-lying.comp", "an atomic: the first vertex of a cell is found"),
+    ("burning/falling-balls.comp", "an atomic: the first vertex of a cell is found"),
     ("burning/flame-lights.comp", "atomics: the light of particles is summed"),
     ("burning/flames-parts.comp", "an atomic: particles are counted"),
     ("burning/flames-ready.comp", "an atomic: ready vertices are listed by block"),

@@ -30,22 +30,28 @@ fn dropped() -> Parameters {
     Parameters { sources: vec![Vec3::new(0.0, 900.0, 0.0)], floor: Some(-0.4), ..natural() }
 }
 
+/// Boxes of sizes at places.
+fn boxes(parts: &[(Vec3, Vec3)]) -> Mesh {
+    let mut boxes = parts
+        .iter()
+        .map(|&(size, at)| shapes::cuboid().transformed(&(Mat4::from_translation(at) * Mat4::from_scale(size / 2.0))));
+    let mut mesh = boxes.next().expect("one at least");
+    for part in boxes {
+        let first = mesh.positions.len() as u32;
+        mesh.indices.extend(part.indices.iter().map(|i| first + i));
+        mesh.positions.extend(&part.positions);
+        mesh.normals.extend(&part.normals);
+        mesh.texture_coordinates.extend(&part.texture_coordinates);
+    }
+    mesh
+}
+
 /// A table whose legs burn through: a box for the top, four for the legs.
 fn table() -> Mesh {
-    let part = |size: Vec3, at: Vec3| {
-        shapes::cuboid().transformed(&(Mat4::from_translation(at) * Mat4::from_scale(size / 2.0)))
-    };
+    let top = (Vec3::new(2.0, 0.12, 1.4), Vec3::new(0.0, 1.06, 0.0));
     let legs = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
-    let legs = legs.map(|(x, z)| part(Vec3::new(0.12, 1.0, 0.12), Vec3::new(0.8 * x, 0.5, 0.5 * z)));
-    let mut mesh = part(Vec3::new(2.0, 0.12, 1.4), Vec3::new(0.0, 1.06, 0.0));
-    for leg in legs {
-        let first = mesh.positions.len() as u32;
-        mesh.indices.extend(leg.indices.iter().map(|i| first + i));
-        mesh.positions.extend(&leg.positions);
-        mesh.normals.extend(&leg.normals);
-        mesh.texture_coordinates.extend(&leg.texture_coordinates);
-    }
-    with_triangles(&mesh, 2500)
+    let legs = legs.map(|(x, z)| (Vec3::new(0.12, 1.0, 0.12), Vec3::new(0.8 * x, 0.5, 0.5 * z)));
+    with_triangles(&boxes(&[&[top][..], &legs].concat()), 2500)
 }
 
 fn meshes() -> [Mesh; 4] {
@@ -272,16 +278,9 @@ fn what_touches_is_held_and_the_text_alone_is_the_same_simulation() {
 #[test]
 fn a_part_comes_to_lie_on_another() {
     gpu_test(|device| {
-        let part = |size: Vec3, at: Vec3| {
-            shapes::cuboid().transformed(&(Mat4::from_translation(at) * Mat4::from_scale(size / 2.0)))
-        };
-        let mut mesh = part(Vec3::new(1.0, 0.3, 1.0), Vec3::new(0.0, 0.15, 0.0));
-        let upper = part(Vec3::new(0.5, 0.2, 0.5), Vec3::new(0.05, 0.5, 0.02));
-        let first = mesh.positions.len() as u32;
-        mesh.indices.extend(upper.indices.iter().map(|i| first + i));
-        mesh.positions.extend(&upper.positions);
-        mesh.normals.extend(&upper.normals);
-        mesh.texture_coordinates.extend(&upper.texture_coordinates);
+        let lower = (Vec3::new(1.0, 0.3, 1.0), Vec3::new(0.0, 0.15, 0.0));
+        let upper = (Vec3::new(0.5, 0.2, 0.5), Vec3::new(0.05, 0.5, 0.02));
+        let mesh = boxes(&[lower, upper]);
         let cold = Parameters { sources: dropped().sources, ..natural() };
         let mut fire = Fire::new(device, Variant::Shell, &cold, &with_triangles(&mesh, 3000));
         let mut energy = f32::INFINITY;
@@ -302,6 +301,46 @@ fn a_part_comes_to_lie_on_another() {
         let top = f64::from(0.3 / diagonal);
         assert!(lowest > top - 0.02 && lowest < top + 0.05, "{lowest} above {top}");
         assert!(seen.body(part).velocity.length() < 0.1, "{:?}", seen.parts[part as usize]);
+    });
+}
+
+#[test]
+fn parts_that_fall_at_once_meet() {
+    gpu_test(|device| {
+        // Three boxes above each other come down at once: the lower two are still falling when the next one comes.
+        let lower = (Vec3::new(0.8, 0.2, 0.8), Vec3::new(0.0, 0.1, 0.0));
+        let middle = (Vec3::new(0.5, 0.2, 0.5), Vec3::new(0.03, 0.45, 0.02));
+        let upper = (Vec3::new(0.3, 0.2, 0.3), Vec3::new(0.01, 0.8, -0.02));
+        let mut fire =
+            Fire::new(device, Variant::Shell, &dropped(), &with_triangles(&boxes(&[lower, middle, upper]), 3000));
+        fire.ticks(SEARCH_TICKS as u32);
+        let start = Seen::of(&fire);
+        let mut order: Vec<u32> = (0..3).collect();
+        let lowest_at_start =
+            |part: &u32| start.members(*part).0.iter().map(|place| place.y).fold(f64::INFINITY, f64::min);
+        order.sort_by(|a, b| lowest_at_start(a).total_cmp(&lowest_at_start(b)));
+        let mut energies = [f32::INFINITY; 3];
+        for tick in 0..180 {
+            fire.ticks(1);
+            let seen = Seen::of(&fire);
+            let spans = [0, 1, 2].map(|at: usize| {
+                let (part, (places, _)) = (order[at], seen.members(order[at]));
+                let heights: Vec<f64> = places.iter().map(|place| seen.body(part).world(*place).y).collect();
+                let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+                (lowest, heights.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+            });
+            for at in [0, 1] {
+                let ((_, top), (bottom, _)) = (spans[at], spans[at + 1]);
+                assert!(bottom > top - 0.02, "tick {tick}: {bottom} below {top}");
+                assert!(tick < 120 || bottom < top + 0.08, "tick {tick}: {bottom} above {top}");
+            }
+            for (energy, part) in energies.iter_mut().zip(&seen.parts) {
+                assert!(part.energy <= *energy + 1e-5 * (1.0 + *energy), "tick {tick}: {} after {energy}", part.energy);
+                *energy = part.energy;
+            }
+        }
+        let seen = Seen::of(&fire);
+        assert!(seen.parts[..3].iter().all(|part| part.velocity.length() < 0.1), "{:?}", &seen.parts[..3]);
     });
 }
 

@@ -1,6 +1,6 @@
 #version 450
 
-// The vertices of the parts that lie still, for others to meet.
+// The vertices of the parts, for others to meet.
 
 layout(local_size_x = 64) in;
 
@@ -31,8 +31,8 @@ layout(set = 0, binding = 66, std430) readonly buffer Parts {
     Part parts[];
 };
 
-layout(set = 0, binding = 76, std430) buffer Lying {
-    uint lying[];
+layout(set = 0, binding = 76, std430) buffer Balls {
+    uint balls[];
 };
 
 void main() {
@@ -41,11 +41,12 @@ void main() {
         return;
     }
     uint part = part_of[vertex];
-    if (part >= MOST_PARTS || parts[min(part, MOST_PARTS - 1u)].rests == 0.0) {
+    if (part >= MOST_PARTS) {
         return;
     }
     uint block = cells[vertex];
     vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
     vec3 position = turned(parts[part].orientation, place) + parts[part].offset;
-    atomicMin(lying[entry_of(cell_at(position))], vertex);
+    uint layer = parts[part].rests != 0.0 ? 0u : 1u + part % 2u;
+    atomicMin(balls[entry_of(layer, cell_at(position))], vertex);
 }
