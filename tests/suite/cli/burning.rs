@@ -436,6 +436,7 @@ fn an_experiment_refuses_what_it_would_not_heed() {
         ("limits --counts 5", "--counts"),
         ("active --flammability 5", "--flammability"),
         ("active --first-frame 5", "--first-frame"),
+        ("laws --look dissertation", "--look"),
         ("scaling --triangles 50", "--triangles"),
         ("scaling --counts 2", "--triangles 2"),
         ("sequence --json", "--json"),

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::burning::{BRIEF, SMALL};
 use super::experiment_tables::shown_tables;
 use super::program::{ONCE, assert_schema, burning, folder, read_json};
+use super::report::assert_table_schema;
 
 #[test]
 fn a_tick_is_timed_by_the_share_of_active_vertices() {
@@ -66,4 +67,25 @@ fn scaling_follows_the_active_triangles() {
         line.split(',').nth(1).unwrap().parse().unwrap()
     };
     assert!(active("800") > 2 * active("200") && active("200") > 0, "{rates}");
+}
+
+#[test]
+fn laws_are_measured_on_any_mesh() {
+    let out = folder();
+    let experiment = burning("experiment laws --mesh teapot --triangles 800 --speed 0.4 --flammability 20 --setting 1");
+    experiment.arg("--out").arg(out.path()).on_test_device().run().succeeded();
+    let document = read_json(&out.path().join("burning-laws.json"));
+    assert_table_schema(&document);
+    let rows = document["table"]["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 6, "{rows:?}");
+    for row in rows {
+        let (side, bound) = row["bound"].as_str().unwrap().rsplit_once(' ').unwrap();
+        let (bound, is_least) = (bound.parse::<f64>().unwrap(), side == "at least");
+        let measured = row["measured"].as_f64();
+        let holds = measured.map(|measured| if is_least { measured >= bound } else { measured <= bound });
+        assert_eq!(row["holds"].as_str().map(|holds| holds == "yes"), holds, "{row}");
+        // The teapot is open, and has no volume to keep.
+        assert!(holds != Some(false) || row["law"].as_str().unwrap().starts_with("edges"), "{row}");
+    }
+    assert!(rows[0]["measured"].as_f64().unwrap() > 0.0, "something falls: {rows:?}");
 }

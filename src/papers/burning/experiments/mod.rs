@@ -2,6 +2,7 @@
 
 mod active;
 mod contact_sheets;
+mod laws;
 pub mod presets;
 mod rates;
 mod refining;
@@ -139,6 +140,22 @@ pub fn all() -> Vec<Experiment<Setup>> {
                 ("active-limit", "this experiment has its own boundary"),
             ],
             run: active_fractions,
+        },
+        Experiment {
+            name: "laws",
+            help: "Laws of a fire on any mesh: what nothing holds falls, wax keeps its volume and comes to rest",
+            options: &[],
+            refuses: &[
+                OWN_OBJECTS,
+                OWN_FRAMES,
+                OWN_STEP,
+                ("time-division", "this experiment looks at every tick"),
+                ("look", "the laws are of the natural look"),
+                ("collapse", "the laws are of parts that fall"),
+                ("frames", "this experiment follows the whole fire"),
+                ("repeat", "this experiment times nothing"),
+            ],
+            run: whole_laws,
         },
     ]
 }
@@ -324,4 +341,13 @@ fn active_fractions(context: &mut Context<'_>) -> Result<(), Error> {
     let table = active::table(&swept.rows);
     let svg = active::plot(&swept.rows)?;
     publish(context, &machine, swept, String::new(), &plot(svg), &[("passes", table)])
+}
+
+fn whole_laws(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = context.over(laws::setup())?;
+    let mut machine = context.open()?;
+    let mut found = Err(Error::Interrupted);
+    context.console.watch("following the fire", &mut |watch| found = laws::found(&mut machine, &setup, watch));
+    context.publish_table(&machine, &laws::table(&found?))?;
+    Ok(machine.check_validation().map(drop)?)
 }

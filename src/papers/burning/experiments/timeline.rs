@@ -14,7 +14,7 @@ use crate::papers::burning::model::tree::nodes_of;
 use crate::papers::burning::{Burning, Counts, Parameters, TICKS_PER_S, Variant};
 
 /// No fire is followed for longer, in ticks.
-const MOST_TICKS: u32 = 20_000;
+pub const MOST_TICKS: u32 = 20_000;
 
 /// The counts of a fire after some tick.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +79,11 @@ pub fn follow(
     }
 }
 
-fn at_rest(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Burning, Error> {
+/// A fire that has not been lit yet.
+///
+/// # Errors
+/// Those of loading and of the Vulkan layer.
+pub fn at_rest(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Burning, Error> {
     let parameters = Parameters { first_frame: 0, ..setup.parameters.clone() };
     let study = Setup { parameters, ..setup.clone() };
     let scene = study.load()?;
