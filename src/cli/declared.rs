@@ -12,32 +12,12 @@ use super::options::{CommonArgs, DepthArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, loading, passes, render, spelling};
+use super::{bench, help, loading, passes, render, spelling};
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
 use crate::measure::study::{ONE_ALTERNATIVE, Preset, Study};
 use crate::measure::{Error, Variant};
-
-/// Options of all papers that the short help lists.
-const EVERYDAY: [&str; 16] = [
-    "fullscreen",
-    "present_mode",
-    "scale",
-    "exit_after",
-    "variant",
-    "preset",
-    "name",
-    "list",
-    "counts",
-    "frame",
-    "dump",
-    "device",
-    "frames",
-    "json",
-    "image",
-    "quiet",
-];
 
 /// The command of a paper with all its verbs.
 pub fn command<S: Study>() -> Command {
@@ -63,7 +43,7 @@ fn window_commands<S: Study>() -> Vec<Command> {
         };
         let view = super::view::command(scene("view", "One variant, or two beside each other"));
         let about = "Open a window: live passes, targets, variants side by side, parameters";
-        vec![finish(view, about), super::worker::command(scene("worker", "Variants"))]
+        vec![finish::<S>(view, about), super::worker::command(scene("worker", "Variants"))]
     }
     #[cfg(not(feature = "window"))]
     Vec::new()
@@ -73,7 +53,7 @@ fn passes_command<S: Study>() -> Command {
     let command = Command::new("passes")
         .arg(variant_list::<S>("Variants to list, comma-separated, or all", "that of a preset made for one, or all"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"));
-    finish(MachineArgs::augment_args(with_scene::<S>(command)), "List the passes in the paper's order")
+    finish::<S>(MachineArgs::augment_args(with_scene::<S>(command)), "List the passes in the paper's order")
 }
 
 fn bench_command<S: Study>() -> Command {
@@ -83,7 +63,7 @@ fn bench_command<S: Study>() -> Command {
     let command = with_scene::<S>(Command::new("bench").arg(variants));
     // A list in one word, too, takes the place of one before it.
     let is_joined = |arg: &Arg| arg.get_value_delimiter().is_some();
-    finish(
+    finish::<S>(
         DepthArgs::augment_args(CommonArgs::augment_args(command))
             .mut_args(|arg| if is_joined(&arg) { arg.action(ArgAction::Set) } else { arg }),
         "Time one configuration in one or more variants, interleaved",
@@ -102,7 +82,7 @@ fn experiment_command<S: Study>() -> Command {
         .arg(assembled_argument())
         .args(options(&own, &S::Options::default()));
     let command = CommonArgs::augment_args(with_scene::<S>(command));
-    finish(command, "Reproduce one table or figure, ours beside the paper's")
+    finish::<S>(command, "Reproduce one table or figure, ours beside the paper's")
 }
 
 fn shard_argument(help: &'static str) -> Arg {
@@ -125,7 +105,7 @@ fn render_command<S: Study>() -> Command {
         .help(format!("Variant to render [default: the preset's if it has one, or {rendered}]"))
         .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str())));
     let command = with_scene::<S>(Command::new("render").arg(variant));
-    finish(PictureArgs::augment_args(command), "Write pictures and intermediate targets")
+    finish::<S>(PictureArgs::augment_args(command), "Write pictures and intermediate targets")
 }
 
 fn stress_command<S: Study>() -> Command {
@@ -133,7 +113,7 @@ fn stress_command<S: Study>() -> Command {
     let default = format!("that of a preset made for one, or {rendered}");
     let variants = variant_list::<S>("Variants to grow, comma-separated, or all", &default);
     let command = with_scene::<S>(Command::new("stress").arg(variants.long("variants").alias("variant")));
-    finish(
+    finish::<S>(
         StressArgs::augment_args(command),
         "Grow one axis until a limit of time, memory, device or correctness stops it",
     )
@@ -151,32 +131,19 @@ fn own_command<S: Study>(verb: &Experiment<S>) -> Command {
                 .help_heading("Output")
                 .help("Write what was found as JSON; to standard output without a file"),
         );
-    finish(command, verb.help)
+    finish::<S>(command, verb.help)
 }
 
-/// The short help lists everyday options, the long one all of them. An option that is given again takes the place of the first, as
-/// what a side of `ab` sets comes after what both have; lists grow.
-fn finish(command: Command, about: &'static str) -> Command {
-    let parameters = ["Device", "Measuring", "In depth", "Output", "Window"];
-    let is_everyday = |arg: &Arg| {
-        let is_common = arg.get_help_heading().is_none_or(|heading| parameters.contains(&heading));
-        !is_common || EVERYDAY.contains(&arg.get_id().as_str())
-    };
-    command
-        .about(about)
-        .long_about(None)
-        .args_override_self(true)
-        .disable_help_flag(true)
+/// A verb: its help opens with everyday options, its own and those of the paper. An option that is given again takes the place of the
+/// first, as what a side of `ab` sets comes after what both have; lists grow.
+fn finish<S: Study>(command: Command, about: &'static str) -> Command {
+    let (parameters, options) = (S::parameters(), S::options());
+    let parameters = parameters.iter().filter(|p| p.is_everyday).map(|p| p.name);
+    let options = options.iter().filter(|o| o.is_everyday).map(|o| o.name);
+    let own = help::everyday(command.get_name()).iter().copied();
+    let everyday: Vec<&str> = own.chain(parameters).chain(options).collect();
+    help::shortened(command.about(about).long_about(None).args_override_self(true), &everyday)
         .disable_version_flag(true)
-        .mut_args(|arg| if is_everyday(&arg) { arg } else { arg.hide_short_help(true) })
-        .arg(
-            Arg::new("help")
-                .short('h')
-                .long("help")
-                .action(ArgAction::HelpShort)
-                .help("Print help on everyday options"),
-        )
-        .arg(Arg::new("help-all").long("help-all").action(ArgAction::HelpLong).help("Print help on every option"))
 }
 
 /// The command with the paper's parameters and presets as options.
@@ -219,10 +186,7 @@ pub fn opposite(name: &str) -> String {
 fn arguments<S: 'static>(parameter: &Parameter<S>, default: &S) -> Vec<Arg> {
     let shape = parameter.shape();
     let is_on = parameter.text(default) == "on";
-    let option = |name: String| {
-        let arg = Arg::new(name.clone()).long(name).help_heading(parameter.group);
-        if parameter.is_everyday { arg } else { arg.hide_short_help(true) }
-    };
+    let option = |name: String| Arg::new(name.clone()).long(name).help_heading(parameter.group);
     if shape.is_flag {
         // The one that changes nothing is taken and not listed.
         let [flag, other] = [(parameter.name.to_owned(), is_on), (opposite(parameter.name), !is_on)]

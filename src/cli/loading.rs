@@ -21,7 +21,6 @@ pub fn option() -> Arg {
         .long(NO_CACHE)
         .action(ArgAction::SetTrue)
         .help_heading("Scene")
-        .hide_short_help(true)
         .help("Read mesh files anew: neither look for them in the cache of the user's folder, nor keep them there")
 }
 

@@ -9,6 +9,7 @@ mod declared;
 mod devices;
 mod failure;
 mod film;
+mod help;
 mod loading;
 mod options;
 mod outcome;
@@ -121,7 +122,13 @@ fn listed() -> Vec<Paper> {
 
 /// The command with every paper below it.
 fn umbrella_command(papers: &[Paper]) -> clap::Command {
-    Umbrella::command().subcommands(papers.iter().map(|paper| (paper.command)()))
+    let program = Umbrella::command().mut_subcommands(|verb| {
+        match help::OF_PROGRAM.iter().find(|(name, _)| *name == verb.get_name()) {
+            Some((_, everyday)) => help::shortened(verb, everyday),
+            None => verb,
+        }
+    });
+    program.subcommands(papers.iter().map(|paper| (paper.command)()))
 }
 
 /// Runs `fumarole`.

@@ -7,9 +7,10 @@ use clap::{Args, Command};
 use super::AbArgs;
 use crate::cli::Paper;
 use crate::cli::failure::Failure;
+use crate::cli::help;
 
 /// Options of a bench that say where its record goes and what is printed: in `ab` they are its own, wherever they stand.
-const OUTPUT: [&str; 4] = ["json", "out", "quiet", "help"];
+const OUTPUT: [&str; 5] = ["json", "out", "quiet", "help", "help-all"];
 
 /// Options of which both sides would write the same file.
 const FILES: [&str; 3] = ["--image", "--trace", "--capture"];
@@ -25,7 +26,7 @@ struct Own {
 impl Own {
     /// All of them.
     fn all() -> Vec<Self> {
-        let mut command = AbArgs::augment_args(Command::new("ab"));
+        let mut command = help::shortened(AbArgs::augment_args(Command::new("ab")), &[]);
         command.build();
         let options = command.get_arguments().filter(|argument| !argument.is_positional());
         options

@@ -299,20 +299,17 @@ impl Parameters {
                 "Heat source in the scaled object's space, up to 16",
                 "3.3",
             )
-            .default_text("the lowest vertex, melting the highest")
-            .everyday(),
+            .default_text("the lowest vertex, melting the highest"),
             row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3"),
             row("heat", p!(heat), any, "Way that heat takes from its sources", "3.3")
                 .default_text("surface, with the dissertation's look air"),
             row("climb", p!(climb), R::from(0.0).to(100.0), CLIMB, ""),
             row("wind", p!(wind), R::from(-10.0).to(10.0), WIND, "").unit("diagonals a second").placeholder("X,Y,Z"),
             row("speed", p!(speed_per_s), R::above(0.0).to(10.0), "Growth of the boundary's radius", "3.3")
-                .unit("diagonals a second")
-                .everyday(),
+                .unit("diagonals a second"),
             row("area-width", p!(width_of_areas), LENGTH, "Width of an area of the boundary", "3.3").unit("diagonals"),
             row("flammability", p!(flammability), R::from(1.0).to(1e6), "L of a vertex", "table 3.1")
-                .unit("ticks of combustion")
-                .everyday(),
+                .unit("ticks of combustion"),
             row("epsilon", p!(epsilon), FRACTION, "Meltability", "table 3.1"),
             row("beta", p!(beta), FRACTION, "Displacement scale", "table 3.1"),
             row("rho", p!(rho), FRACTION, "Material density", "table 3.1"),
@@ -334,14 +331,13 @@ impl Parameters {
                 "5.5",
             ),
             row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z, 1048576 in all at most", "3.5.1")
-                .placeholder("XxYxZ")
-                .everyday(),
+                .placeholder("XxYxZ"),
             row("active-limit", p!(active_limit), any, ACTIVE_LIMIT, "3.7.1"),
             row("time-division", p!(time_division), R::from(1.0).to(64.0), "Spread each tick over so many", "3.7.2")
                 .unit("frames"),
             row("preload", p!(preload), any, PRELOAD, "3.7.4"),
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
-            row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines).everyday(),
+            row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines),
             row("collapse", p!(collapse), any, COLLAPSE, "").cost(Cost::Pipelines),
             row("burn-away", p!(burn_away), any, BURN_AWAY, "").cost(Cost::Pipelines),
             row("setting", p!(setting_s), R::above(0.0).to(1e4), SETTING, "").unit("seconds"),
@@ -354,15 +350,14 @@ impl Parameters {
             )
             .unit("diagonals a second"),
             row("ground", p!(ground), any, "Draw the ground, of the natural look", "").cost(Cost::Pipelines),
-            row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6").unit("particles").everyday(),
-            row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6").unit("particles").everyday(),
+            row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6").unit("particles"),
+            row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6").unit("particles"),
             row("particle-radius", p!(particle_radius), LENGTH, "Radius of a particle", "").unit("diagonals"),
             row("fire-light", p!(fire_light), FACTOR, "Factor of the light of the flames, of the natural look", "")
                 .cost(Cost::Constants),
             row("fire-scale", p!(fire_scale), R::from(1.0).to(8.0), FIRE_SCALE, "").unit("pixels"),
             row("exposure", p!(exposure), FACTOR, "Factor of the picture's light, of the natural look", "")
-                .cost(Cost::Constants)
-                .everyday(),
+                .cost(Cost::Constants),
             row("tone", p!(tone), any, "Fate of what is brighter than the display, of the natural look", "")
                 .cost(Cost::Constants),
             row(
@@ -381,7 +376,7 @@ impl Parameters {
                 .default_text("0.36,0.17,0.07, of wax 0.8,0.66,0.4, with a texture 1,1,1"),
             row("background", p!(background), R::from(0.0).to(1.0), "Linear red,green,blue behind the object", "")
                 .placeholder("R,G,B"),
-            row("shading", p!(shading), any, "The quantity that colours the mesh", "").cost(Cost::Pipelines).everyday(),
+            row("shading", p!(shading), any, "The quantity that colours the mesh", "").cost(Cost::Pipelines),
             row("camera", CAMERA, any, "Camera: eye and target, x,y,z,x,y,z", "")
                 .unit("diagonals")
                 .default_text("the object fills 80 % of the picture")

@@ -311,8 +311,7 @@ impl Parameters {
                      texel centres; the thesis's is 1",
                 )
                 .section("4.5")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("intensity", field!(Parameters.intensity))
                 .help("The intensity of light on a plane: of triangles, as the thesis prints it, or of vertices, interpolated")
                 .section("eq. 4-18")

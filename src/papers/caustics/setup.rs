@@ -253,8 +253,7 @@ impl Study for Setup {
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("floor", field!(Setup.floor))
                 .help("The pool's floor receives caustics as well")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
         ];
         let water_and_light = [
             Parameter::new("water-map", field!(Setup.water_map))

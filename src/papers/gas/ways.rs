@@ -52,7 +52,6 @@ impl Ways {
                 )
                 .section("Combining A-buffer and volume rendering techniques")
                 .cost(Cost::Pipelines)
-                .everyday()
                 .unrecorded(),
             Parameter::new("march", field!(Ways.marches))
                 .help(
@@ -62,7 +61,6 @@ impl Ways {
                 )
                 .section("Volume rendering")
                 .cost(Cost::Pipelines)
-                .everyday()
                 .unrecorded(),
             Parameter::new("density-cache", field!(Ways.density_caches))
                 .range(Range::from(2.0).to(512.0))
@@ -72,7 +70,6 @@ impl Ways {
                 )
                 .section("Discussion of results")
                 .cost(Cost::Pipelines)
-                .everyday()
                 .unrecorded(),
             Parameter::new("skip-empty", field!(Ways.skips))
                 .range(Range::from(0.0).to(100.0))
@@ -83,7 +80,6 @@ impl Ways {
                 )
                 .section("Volume rendering")
                 .cost(Cost::Pipelines)
-                .everyday()
                 .unrecorded(),
             Parameter::new("volume-scale", field!(Ways.scales))
                 .range(Range::from(1.0).to(16.0))
@@ -94,7 +90,6 @@ impl Ways {
                 )
                 .section("Volume rendering")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
         ]
     }

@@ -244,8 +244,7 @@ impl Parameters {
                 .unit("metres")
                 .help("Effective radius h of a particle, at most the shortest side of the space")
                 .section("eq. 6.2")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("density", DENSITY)
                 .placeholder("XxYxZ")
                 .range(Range::from(1.0))
@@ -263,14 +262,12 @@ impl Parameters {
             Parameter::new("surface", field!(Parameters.surface))
                 .help("Height of the surface over a column of grid points")
                 .section("6.2")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("surface-draw", field!(Parameters.surface_draw))
                 .help("Drawing of the surface")
                 .section("7")
                 .default_text("splats; in `gpu-driven` march")
                 .cost(Cost::Pipelines)
-                .everyday()
                 .unrecorded(),
             Parameter::new("splats", SPLATS)
                 .placeholder("XxZ")
@@ -283,8 +280,7 @@ impl Parameters {
                 .range(Range::above(0.0))
                 .unit("metres")
                 .help("Radius of a splat, at most the shortest side of the space")
-                .section("7.1")
-                .everyday(),
+                .section("7.1"),
             Parameter::new("splat-shape", field!(Parameters.splat_shape)).help("Outline of a splat").section("9"),
             Parameter::new("epsilon", field!(Parameters.epsilon_m))
                 .range(up_to_1000)
@@ -300,8 +296,7 @@ impl Parameters {
             Parameter::new("simulation", field!(Parameters.simulation))
                 .help("Motion of the particles")
                 .section("9")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("speed", field!(Parameters.speed_m_s))
                 .range(Range::from(0.0).to(1000.0))
                 .unit("metres per second")
@@ -333,8 +328,7 @@ impl Parameters {
                 .section("7.2"),
             Parameter::new("shading", field!(Parameters.shading))
                 .help("Colour of the splats, or the particles in their place")
-                .cost(Cost::Pipelines)
-                .everyday(),
+                .cost(Cost::Pipelines),
             Parameter::new("geometry-stage", field!(Parameters.geometry_stage))
                 .help("Splats by a geometry stage, as in the thesis, or as instanced quads")
                 .section("7.1")
@@ -346,7 +340,6 @@ impl Parameters {
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of the particles")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
             Parameter::new("time-step", field!(Parameters.time_step_s))
                 .range(Range::from(0.0).to(1000.0))

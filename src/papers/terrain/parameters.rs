@@ -327,8 +327,7 @@ impl Parameters {
             Parameter::new("interpolation", field!(Parameters.interpolation))
                 .help("The surface between the samples")
                 .section("3")
-                .cost(Cost::Pipelines)
-                .everyday(),
+                .cost(Cost::Pipelines),
             Parameter::new("normals", field!(Parameters.normals))
                 .help("Normals of the surface that is seen")
                 .section("4"),
@@ -339,8 +338,7 @@ impl Parameters {
                      south",
                 )
                 .section("eq. 5, 6")
-                .cost(Cost::Pipelines)
-                .everyday(),
+                .cost(Cost::Pipelines),
             Parameter::new("base-level", field!(Parameters.base_level_m))
                 .range(Range::from(-1e6).to(1e6))
                 .unit("metres")

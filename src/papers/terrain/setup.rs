@@ -399,8 +399,7 @@ impl Study for Setup {
                      turned counterclockwise and scaled",
                 )
                 .section("1")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("drape", field!(Setup.drape))
                 .help(

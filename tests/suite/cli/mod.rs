@@ -19,6 +19,7 @@ mod experiment;
 mod experiment_tables;
 mod gas;
 mod gas_volumes;
+mod help;
 mod hostile;
 mod hostile_cost;
 mod interruption;

@@ -325,13 +325,11 @@ impl Parameters {
                 .range(Range::from(1.0).to(64.0))
                 .help("Samples in each increment along the viewer's ray, each of its own part; the paper's is one")
                 .section("Volume rendering")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("jitter", field!(Parameters.jitter))
                 .help("Place of a sample in its part")
                 .section("Volume rendering")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("bricks", field!(Parameters.bricks))
                 .range(Range::from(1.0).to(128.0))
                 .help("Of `skip-empty` and `march` delta: bricks along each axis of the box around a volume")
@@ -348,8 +346,7 @@ impl Parameters {
                 .range(Range::from(1.0).to(1024.0))
                 .placeholder("WxHxD")
                 .help("Of variant froxel: columns and rows that the picture, and slices that its depth is cut into")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("pixel-size", field!(Parameters.pixel_size))
                 .range(Range::from(1e-4).to(1.0))
                 .help("Octaves of turbulence go on while their scale exceeds it")

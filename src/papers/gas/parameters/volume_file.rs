@@ -160,7 +160,6 @@ impl Reading {
                 )
                 .default_text("0 and the file's largest value")
                 .cost(Cost::Buffers)
-                .everyday()
                 .requires("volume-file"),
             Parameter::new("volume-unfit", field!(Reading.unfit))
                 .help("Of files: what a value does that is no density, which NaN is, infinity, and without a range what is negative")

@@ -222,10 +222,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
     let scene = "the scene's";
     let figure = "the figure's";
     let parameters = vec![
-        Parameter::new("density", number!(function))
-            .help("Density function of all volumes")
-            .default_text(scene)
-            .everyday(),
+        Parameter::new("density", number!(function)).help("Density function of all volumes").default_text(scene),
         Parameter::new("opaque", number!(|v| Some(&mut v.texture.opaque)))
             .range(Range::from(0.0).to(1e6))
             .help("Factor of all volumes' density (the paper's opaque)")

@@ -93,7 +93,8 @@ pub fn options() -> Vec<Parameter<Options>> {
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
             .help("Samples a side in table 1, or widths of the screen in pixels, comma-separated")
-            .default_text("128,256,512,1024,2048,4096,8192,16384, or 200,400,800,1200,1600"),
+            .default_text("128,256,512,1024,2048,4096,8192,16384, or 200,400,800,1200,1600")
+            .everyday(),
         Parameter::new("variant", field!(Options.variants))
             .placeholder("VARIANT,..")
             .help("Variants of a sweep, comma-separated, or all; a figure shows the first")
