@@ -5,6 +5,7 @@
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
 #include "burning/ash.glsl"
+#include "burning/noise.glsl"
 #include "burning/light-flames.glsl"
 
 layout(set = 0, binding = 71, std430) readonly buffer Ash {
@@ -19,23 +20,6 @@ const vec3 GROUND = vec3(0.15, 0.14, 0.13);
 const vec3 ASH_COLOR = vec3(0.42, 0.41, 0.4);
 const float FADES_FROM = 0.5; // diagonals
 const float FADES_TO = 1.6;
-
-float lattice(ivec2 at) {
-    uint h = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u;
-    h ^= h >> 15u;
-    h *= 0x846ca68bu;
-    h ^= h >> 16u;
-    return float(h & 0xffffu) / 65535.0;
-}
-
-float noise(vec2 at) {
-    ivec2 cell = ivec2(floor(at));
-    vec2 t = at - vec2(cell);
-    t = t * t * (3.0 - 2.0 * t);
-    float low = mix(lattice(cell), lattice(cell + ivec2(1, 0)), t.x);
-    float high = mix(lattice(cell + ivec2(0, 1)), lattice(cell + ivec2(1, 1)), t.x);
-    return mix(low, high, t.y);
-}
 
 // Triangles over a cell, by a quadratic B-spline of the 3 x 3 cells around.
 float ash_at(vec2 xz) {

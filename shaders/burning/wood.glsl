@@ -6,7 +6,7 @@ float wood_hash(ivec3 at) {
     h ^= h >> 15u;
     h *= 0x846ca68bu;
     h ^= h >> 16u;
-    return float(h & 0xffffu) / 65535.0;
+    return float(h & 0xffffu);
 }
 
 float wood_noise(vec3 at) {
@@ -19,7 +19,7 @@ float wood_noise(vec3 at) {
         vec3 weight = mix(1.0 - t, t, vec3(corner));
         sum += weight.x * weight.y * weight.z * wood_hash(cell + corner);
     }
-    return sum;
+    return sum * (1.0 / 65535.0);
 }
 
 float wood(vec3 rest) {

@@ -12,8 +12,9 @@ use crate::gpu::{Blend, Buffer, Error, Frame, Image, ImageDesc, ImageView, Load,
 
 /// The pass.
 pub struct DrawFire {
-    pass: Pass,
-    particle_count: u32,
+    /// Smoke, then fire, with their particles: what of the smoke hides fire is in front mostly, and fire shines through. A
+    /// shader each, for devices that run both sides of a branch would pay for both everywhere.
+    steps: [(Pass, u32); 2],
     /// The picture, or the layer: linear light, and what it leaves of the light behind it.
     pub target: Arc<ImageView>,
 }
@@ -31,37 +32,43 @@ impl DrawFire {
         (draw, flames): (&Draw, &Flames),
         fire_lights: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
-        let pass = |light: &str| {
-            let shader = |stage: &str| format!("burning/draw-fire-{light}.{stage}");
-            Pass::graphics("draw-fire", "3.6", &shader("vert"), &shader("frag"))
-        };
-        let (pass, target, load) = match fire_lights {
-            None => (pass("sun"), draw.picture.clone(), Load::Keep),
-            Some(fire_lights) => {
+        let (light, target, load) = match fire_lights {
+            None => ("sun", draw.picture.clone(), Load::Keep),
+            Some(_) => {
                 let [width, height] = layer_size(parameters);
                 let desc = ImageDesc::new_2d(format!("{label}/fire-layer"), LIGHT, width, height)
                     .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED);
-                let layer = Image::new(shaders.device(), desc)?.view()?;
-                (pass("flames").with("FireLights", fire_lights), layer, Load::Clear([0.0; 4]))
+                ("flames", Image::new(shaders.device(), desc)?.view()?, Load::Clear([0.0; 4]))
             }
         };
-        let pass = pass
-            .with("constants", &buffers.constants)
-            .with("view", &draw.view)
-            .with("billboards", &flames.billboards)
-            .with("Particles", &flames.particles)
-            .with("mesh_depth", &draw.depth)
-            .color(&target, load, Blend::Premultiplied)
-            .topology(Topology::TriangleStrip)
-            .build(shaders)?;
-        Ok(DrawFire { pass, particle_count: flames.particle_count, target })
+        let step = |vertex: &str, fragment: &str, load| {
+            let [vertex, fragment] = [vertex, fragment].map(|shader| format!("burning/{shader}"));
+            Pass::graphics("draw-fire", "3.6", &vertex, &fragment)
+                .with("view", &draw.view)
+                .with("billboards", &flames.billboards)
+                .with("Particles", &flames.particles)
+                .with("mesh_depth", &draw.depth)
+                .color(&target, load, Blend::Premultiplied)
+                .topology(Topology::TriangleStrip)
+        };
+        let smoke = step(&format!("draw-smoke-{light}.vert"), &format!("draw-smoke-{light}.frag"), load);
+        let smoke = smoke.with("constants", &buffers.constants);
+        let smoke = match fire_lights {
+            None => smoke,
+            Some(fire_lights) => smoke.with("FireLights", fire_lights),
+        };
+        let fire = step("draw-fire.vert", &format!("draw-fire-{light}.frag"), Load::Keep);
+        let [smoke, fire] = Pass::steps([smoke.build(shaders)?, fire.build(shaders)?]);
+        Ok(DrawFire { steps: [(smoke, parameters.smoke), (fire, parameters.fire)], target })
     }
 
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.instances(4, self.particle_count);
+        self.steps.iter().try_for_each(|(step, particles)| {
+            frame.graphics(step, |draw| {
+                draw.instances(4, *particles);
+            })
         })
     }
 }

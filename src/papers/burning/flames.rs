@@ -70,8 +70,6 @@ pub struct Flames {
     pub groups: Arc<Buffer>,
     /// [`Particle`]s: fire, then smoke.
     pub particles: Arc<Buffer>,
-    /// Particles of fire and smoke together.
-    pub(super) particle_count: u32,
 }
 
 impl Flames {
@@ -145,7 +143,7 @@ impl Flames {
             (build(shaders, list, &[state])?, Work::Indirect),
             (build(shaders, burn, &[state, rotations])?, Work::Elements(particle_count)),
         ]);
-        Ok(Some(Flames { steps, billboards, groups, particles, particle_count }))
+        Ok(Some(Flames { steps, billboards, groups, particles }))
     }
 
     /// Turns fire and smoke towards the camera of the next frames.
