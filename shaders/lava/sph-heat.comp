@@ -1,7 +1,8 @@
 #version 450
 
 // Temperatures at the end of the step: conduction by the symmetric form of Cleary and Monaghan (1999), in which what one
-// particle loses another gains, and radiation at the free surface by Stefan and Boltzmann's law. A particle is at the surface
+// particle loses another gains, and radiation at the free surface by Stefan and Boltzmann's law. What is exchanged is enthalpy:
+// lava that crystallises gives off its latent heat evenly from the liquidus to the solidus. A particle is at the surface
 // where the smoothed amount of lava falls off steeply (Mueller et al. 2003); the steepness is the share of its face. The face is
 // half a distance of particles away from the middle, and as hot as what it radiates and what reaches it agree.
 
@@ -21,6 +22,22 @@ layout(set = 0, binding = 4, std430) readonly buffer Pushed {
 layout(set = 0, binding = 5, std430) buffer Heat {
     vec2 list[]; // kelvin as the step ends, and the steepness of a particle's face, 0 inside
 } heat;
+
+layout(set = 0, binding = 6, std430) readonly buffer Latent {
+    float kelvin; // latent heat over the heat capacity
+    float interval_k; // from solidus to liquidus
+} latent;
+
+// Enthalpy over the heat capacity: what lava of a temperature and its share of melt hold, in kelvin.
+float enthalpy_of(float kelvin) {
+    return kelvin + latent.kelvin * clamp((kelvin - flow.solidus_k) / latent.interval_k, 0.0, 1.0);
+}
+
+// The temperature of it.
+float kelvin_of(float enthalpy) {
+    float melt = clamp((enthalpy - flow.solidus_k) / (latent.interval_k + latent.kelvin), 0.0, 1.0);
+    return enthalpy - latent.kelvin * melt;
+}
 
 // Of the amount of lava per h: on a level face 1.1 in the first layer and 0.08 in the second, by the layer that lies close to
 // the floor up to 0.5.
@@ -72,7 +89,8 @@ void main() {
     }
     float steepness = length(flow.volume * gradient + wall_gradient_once(walls_at(place_m)));
     steepness = steepness > STEEP ? steepness : 0.0;
-    kelvin += flow.conduction * conducted;
-    kelvin -= flow.given * steepness * (kelvin - face_of(kelvin));
-    heat.list[at] = vec2(kelvin, steepness);
+    float enthalpy = enthalpy_of(kelvin) + flow.conduction * conducted;
+    kelvin = kelvin_of(enthalpy);
+    enthalpy -= flow.given * steepness * (kelvin - face_of(kelvin));
+    heat.list[at] = vec2(kelvin_of(enthalpy), steepness);
 }

@@ -17,6 +17,36 @@ pub struct Heat {
     pub emissivity: f64,
     /// Temperature around the lava.
     pub ambient: f64,
+    /// Latent heat over heat capacity, and the temperatures between which it is given off.
+    pub latent: f64,
+    /// Lava below has crystallised.
+    pub solidus: f64,
+    /// Lava above has no crystals.
+    pub liquidus: f64,
+}
+
+impl Heat {
+    /// Heat at a temperature over the heat capacity, the latent one included.
+    pub fn enthalpy(&self, kelvin: f64) -> f64 {
+        let melt = if kelvin <= self.solidus {
+            0.0
+        } else if kelvin >= self.liquidus {
+            1.0
+        } else {
+            (kelvin - self.solidus) / (self.liquidus - self.solidus)
+        };
+        kelvin + melt * self.latent
+    }
+
+    /// The temperature of so much, by bisection: what is latent makes it lower.
+    pub fn kelvin(&self, enthalpy: f64) -> f64 {
+        let (mut low, mut high) = (enthalpy - self.latent, enthalpy);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.enthalpy(middle) < enthalpy { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
 }
 
 impl Fluid {
@@ -53,14 +83,15 @@ impl Fluid {
     /// A particle's temperature after one step, and before radiation.
     pub fn heated(&self, heat: &Heat, places: &[DVec3], kelvin: &[f64], at: usize) -> (f64, f64) {
         let (_, volume) = self.volumes();
-        let mut conducted = kelvin[at];
+        let mut enthalpy = heat.enthalpy(kelvin[at]);
         for (i, &other) in places.iter().enumerate() {
             let distance = self.apart(places[at], other).length();
             if i != at && distance > 0.0 {
                 let drag = -wendland_slope(distance, self.support) / distance;
-                conducted += 2.0 * self.step * heat.diffusivity * volume * drag * (kelvin[i] - kelvin[at]);
+                enthalpy += 2.0 * self.step * heat.diffusivity * volume * drag * (kelvin[i] - kelvin[at]);
             }
         }
+        let conducted = heat.kelvin(enthalpy);
         let faces = self.faces(self.steepness(places, at));
         // What comes to the face from the middle, half a distance away, is what leaves it: by bisection.
         let conductivity = heat.diffusivity * heat.capacity;
@@ -72,7 +103,7 @@ impl Fluid {
             if leaving(middle) < arriving(middle) { low = middle } else { high = middle }
         }
         let lost = self.step * faces / self.spacing * arriving(low) / heat.capacity;
-        (conducted - lost, conducted)
+        (heat.kelvin(enthalpy - lost), conducted)
     }
 
     /// Rate of strain at a particle per second, the root of twice the sum of the squares of its components: exact of a speed that is
@@ -130,6 +161,7 @@ pub fn cooled_slab(heat: &Heat, depth: f64, cells: usize, kelvin: f64, time: f64
     let steps = (time / (0.1 * side * side / heat.diffusivity)).ceil();
     let step = time / steps;
     let mut slab = vec![kelvin; cells];
+    let mut enthalpies = vec![heat.enthalpy(kelvin); cells];
     let flow = |low: f64, high: f64| heat.diffusivity / side * (low - high);
     let radiated = |t: f64| heat.emissivity * STEFAN_BOLTZMANN / heat.capacity * (t.powi(4) - heat.ambient.powi(4));
     for _ in 0..steps as u64 {
@@ -142,8 +174,9 @@ pub fn cooled_slab(heat: &Heat, depth: f64, cells: usize, kelvin: f64, time: f64
         }
         let between = slab.windows(2).map(|pair| flow(pair[0], pair[1]));
         let upwards: Vec<f64> = [0.0].into_iter().chain(between).chain([radiated(face)]).collect();
-        for (cell, flows) in slab.iter_mut().zip(upwards.windows(2)) {
-            *cell += step / side * (flows[0] - flows[1]);
+        for ((cell, enthalpy), flows) in slab.iter_mut().zip(&mut enthalpies).zip(upwards.windows(2)) {
+            *enthalpy += step / side * (flows[0] - flows[1]);
+            *cell = heat.kelvin(*enthalpy);
         }
     }
     slab
@@ -157,7 +190,15 @@ mod tests {
     #[test]
     fn a_thick_slab_cools_as_a_half_space_does() {
         // Small losses are nearly constant.
-        let heat = Heat { diffusivity: 1e-3, capacity: 1e6, emissivity: 0.2, ambient: 300.0 };
+        let heat = Heat {
+            diffusivity: 1e-3,
+            capacity: 1e6,
+            emissivity: 0.2,
+            ambient: 300.0,
+            latent: 0.0,
+            solidus: 1273.0,
+            liquidus: 1473.0,
+        };
         let (depth, time, start) = (1.0, 10.0, 1400.0);
         let slab = cooled_slab(&heat, depth, 200, start, time);
         let flux = heat.emissivity * STEFAN_BOLTZMANN * (1400f64.powi(4) - 300f64.powi(4));

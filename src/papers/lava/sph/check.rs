@@ -4,7 +4,7 @@ use super::super::parameters::Parameters;
 use super::MOST_ITERATIONS;
 use super::Scale;
 use super::chebyshev;
-use super::heat::{Heat, Rheology};
+use super::heat::{Heat, LEAST_INTERVAL_K, MOST_LATENT_K, Rheology};
 use super::parameters::{Flow, Sides, Simulation};
 use crate::measure::ParameterError;
 
@@ -83,13 +83,40 @@ fn check_heat(flow: &Flow, scale: &Scale) -> Result<(), ParameterError> {
          a larger `heat-capacity`",
     )?;
     let default = Heat::default();
-    if heat.rheology == Rheology::Constant {
-        for (name, value, usual) in
-            [("solidus", heat.solidus_k, default.solidus_k), ("crust-viscosity", heat.crust_pa_s, default.crust_pa_s)]
-        {
-            ParameterError::check(value == usual, name, value, "changes nothing without `rheology` basalt")?;
-        }
-        return Ok(());
+    let (is_basalt, is_latent) = (heat.rheology == Rheology::Basalt, heat.latent_j_kg > 0.0);
+    ParameterError::check(
+        is_latent || heat.liquidus_k == default.liquidus_k,
+        "liquidus",
+        heat.liquidus_k,
+        "changes nothing without `latent-heat`",
+    )?;
+    ParameterError::check(
+        !is_latent || heat.liquidus_k - heat.solidus_k >= LEAST_INTERVAL_K,
+        "liquidus",
+        heat.liquidus_k,
+        "must be at least one kelvin above the `solidus`",
+    )?;
+    let [latent_k, _] = heat.crystallising_k();
+    ParameterError::check(
+        latent_k <= MOST_LATENT_K,
+        "latent-heat",
+        heat.latent_j_kg,
+        &format!("must be no more than would heat the lava by {MOST_LATENT_K} kelvin: take a larger `heat-capacity`"),
+    )?;
+    ParameterError::check(
+        is_basalt || is_latent || heat.solidus_k == default.solidus_k,
+        "solidus",
+        heat.solidus_k,
+        "changes nothing without `rheology` basalt or `latent-heat`",
+    )?;
+    if !is_basalt {
+        let problem = "changes nothing without `rheology` basalt";
+        return ParameterError::check(
+            heat.crust_pa_s == default.crust_pa_s,
+            "crust-viscosity",
+            heat.crust_pa_s,
+            problem,
+        );
     }
     ParameterError::check(flow.viscosity_pa_s > 0.0, "viscosity", flow.viscosity_pa_s, "must be above 0 for basalt")?;
     ParameterError::check(

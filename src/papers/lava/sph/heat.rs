@@ -7,6 +7,11 @@ use crate::measure::parameter::{Choice, Cost, Parameter, Range};
 /// Stefan and Boltzmann's constant, watts per square metre and K^4: of the SI's exact values (2019).
 const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 
+/// Least that lies between solidus and liquidus, kelvin.
+pub const LEAST_INTERVAL_K: f32 = 1.0;
+/// Most that latent heat is over the heat capacity, kelvin, 14 times as much as of basalt: sums of both are single numbers.
+pub const MOST_LATENT_K: f32 = 4000.0;
+
 /// Law that the viscosity follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rheology {
@@ -37,9 +42,13 @@ pub struct Heat {
     pub conductivity_w_mk: f32,
     /// Heat capacity in joules per kilogram and kelvin, 1 to 100,000.
     pub capacity_j_kgk: f32,
+    /// Latent heat of crystallisation in joules per kilogram, 0 to 1,000,000, given off evenly from the liquidus to the solidus.
+    pub latent_j_kg: f32,
+    /// Temperature above which lava has no crystals, kelvin, 300 to 2500, at least one above the solidus.
+    pub liquidus_k: f32,
     /// Law that the viscosity follows.
     pub rheology: Rheology,
-    /// Temperature below which lava is a crust, kelvin, 300 to 2000.
+    /// Temperature below which lava is a crust and has no melt, kelvin, 300 to 2000.
     pub solidus_k: f32,
     /// Most viscosity that crust and cold lava have, pascal seconds, at least that of the melt and at most 1e9.
     pub crust_pa_s: f32,
@@ -53,6 +62,8 @@ impl Default for Heat {
             emissivity: 0.95,
             conductivity_w_mk: 1.5,
             capacity_j_kgk: 1200.0,
+            latent_j_kg: 0.0,
+            liquidus_k: 1473.0,
             rheology: Rheology::Constant,
             solidus_k: 1273.0,
             crust_pa_s: 2000.0,
@@ -93,6 +104,18 @@ impl Heat {
                 .help("With sph: heat capacity of the lava; a hundredth of it makes heat a hundred times as fast")
                 .section("9")
                 .cost(Cost::Buffers),
+            Parameter::new("latent-heat", field!(Heat.latent_j_kg))
+                .range(Range::from(0.0).to(1e6))
+                .unit("joules per kilogram")
+                .help("With sph: latent heat of crystallisation, given off evenly from the liquidus down to the solidus; basalt's is 350000")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("liquidus", field!(Heat.liquidus_k))
+                .range(Range::from(300.0).to(2500.0))
+                .unit("kelvin")
+                .help("With latent heat: temperature above which lava has no crystals, at least one kelvin above the solidus")
+                .section("9")
+                .cost(Cost::Buffers),
             Parameter::new("rheology", field!(Heat.rheology))
                 .help("With sph: what the viscosity follows from")
                 .section("9")
@@ -100,7 +123,7 @@ impl Heat {
             Parameter::new("solidus", field!(Heat.solidus_k))
                 .range(Range::from(300.0).to(2000.0))
                 .unit("kelvin")
-                .help("With basalt: temperature below which lava is a crust")
+                .help("With basalt or latent heat: temperature below which lava is a crust, and has crystallised")
                 .section("9")
                 .cost(Cost::Buffers),
             Parameter::new("crust-viscosity", field!(Heat.crust_pa_s))
@@ -122,6 +145,11 @@ impl Heat {
     pub fn radiance(&self, spacing_m: f64) -> f64 {
         let conductance_w_m2k = 2.0 * f64::from(self.conductivity_w_mk) / spacing_m;
         if conductance_w_m2k > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k } else { 0.0 }
+    }
+
+    /// Latent heat over the heat capacity, and what lies between solidus and liquidus, both in kelvin.
+    pub fn crystallising_k(&self) -> [f32; 2] {
+        [self.latent_j_kg / self.capacity_j_kgk, (self.liquidus_k - self.solidus_k).max(LEAST_INTERVAL_K)]
     }
 
     /// Most viscosity over the melt's.

@@ -230,6 +230,8 @@ impl Sph {
         let predicted = [buffer("predicted-a", 16)?, buffer("predicted-b", 16)?];
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
         let heat = buffer("heat", 8)?;
+        let latent = parameters.flow.heat.crystallising_k();
+        let latent = context.upload("latent", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&latent))?;
         let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
 
         let is_level = bed.is_level();
@@ -266,7 +268,7 @@ impl Sph {
         Ok(Sph {
             inflow: [inflow(0)?, inflow(1)?],
             forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
-            heat_pass: sph_heat(shaders, ground, &pushed, &heat)?,
+            heat_pass: sph_heat(shaders, ground, [&pushed, &latent], &heat)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
             rheology,
             predict: sph_predict(shaders, ground, &velocities[coefficients.len() % 2], &predicted[0])?,

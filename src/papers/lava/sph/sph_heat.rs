@@ -5,15 +5,21 @@ use std::sync::Arc;
 use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 
-/// Makes the pass; `pushed` holds the temperatures before, `heat` takes those after and the steepness of each face.
+/// Makes the pass; `pushed` holds the temperatures before, `heat` takes those after and the steepness of each face. `latent` holds
+/// the latent heat over the heat capacity, and what lies between solidus and liquidus, in kelvin.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn sph_heat(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
-    pushed: &Arc<Buffer>,
+    [pushed, latent]: [&Arc<Buffer>; 2],
     heat: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    ground.over_cells("sph-heat", "lava/sph-heat.comp").with("pushed", pushed).with("heat", heat).build(shaders)
+    ground
+        .over_cells("sph-heat", "lava/sph-heat.comp")
+        .with("pushed", pushed)
+        .with("heat", heat)
+        .with("latent", latent)
+        .build(shaders)
 }
