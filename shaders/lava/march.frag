@@ -11,17 +11,7 @@
 
 #include "lava/scene.glsl"
 #include "lava/ground.glsl"
-
-layout(push_constant, std430) uniform Rays {
-    vec2 drift_m; // distance that the rock has moved with the lava, along x and z
-    uint mode; // the one of the thesis's pictures that is drawn
-    float near_m;
-    vec3 eye_m;
-    float far_m;
-    vec3 first; // direction to the corner of the first pixel; its length along the view is 1
-    vec3 across; // to the next pixel of a row
-    vec3 down; // to the next row
-} shading;
+#include "lava/rays.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Highest {
     float all; // place of the height field, metres
@@ -33,14 +23,12 @@ layout(set = 0, binding = 5, std430) readonly buffer Heights {
 
 #include "lava/height.glsl"
 #include "lava/color.glsl"
+#include "lava/taps.glsl"
 
 layout(location = 0) out vec4 accumulated;
 
 // lavapipe ends all loops of a shader after 65,535 iterations. A ray crosses at most columns + rows + 1 cells.
 const int MOST_CELLS = 65534;
-// Most taps of the rock along each side of a pixel, and the texels between two: the sampler's own filter is two wide.
-const float MOST_TAPS = 3.0;
-const float TEXELS_A_TAP = 1.5;
 const float FAR_AWAY = 1.0e30;
 
 struct Hit {
@@ -150,7 +138,7 @@ Hit march(vec3 direction) {
 }
 
 void main() {
-    vec3 direction = shading.first + gl_FragCoord.x * shading.across + gl_FragCoord.y * shading.down;
+    vec3 direction = ray_through(gl_FragCoord.xy);
     Hit hit = march(direction);
     if (hit.t > shading.far_m) {
         discard;
@@ -164,23 +152,8 @@ void main() {
         discard;
     }
     vec3 normal = is_wall ? hit.side : normalize(surface.xyz);
-    // The pixel's sides on the tangent plane; seen edge-on they would not end.
-    float facing = dot(direction, normal);
-    facing = abs(facing) < 0.05 ? (facing < 0.0 ? -0.05 : 0.05) : facing;
-    vec3 right_m = hit.t * (shading.across - direction * (dot(shading.across, normal) / facing));
-    vec3 down_m = hit.t * (shading.down - direction * (dot(shading.down, normal) / facing));
-    vec2 texels = vec2(length(right_m), length(down_m)) / scene.rock_tile_m * scene.rock_texels;
-    vec2 taps = clamp(ceil(texels / TEXELS_A_TAP), 1.0, MOST_TAPS);
-    Rock laid = rock_of(place_m.xz);
-    vec3 rock = vec3(0.0);
-    for (float y = 0.5; y < taps.y; y++) {
-        for (float x = 0.5; x < taps.x; x++) {
-            vec3 tap_m = place_m + (x / taps.x - 0.5) * right_m + (y / taps.y - 0.5) * down_m;
-            // The rock of a wall goes on from its edge, as if it were folded down.
-            rock += rock_at(laid, tap_m.xz + hit.side.xz * (surface.w - tap_m.y));
-        }
-    }
-    vec3 color = color_of(place_m, normal, rock / (taps.x * taps.y));
+    vec3 rock = rock_over(place_m, hit.t, direction, normal, hit.side, surface.w);
+    vec3 color = color_of(place_m, normal, rock);
     accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color, 1.0);
     gl_FragDepth = (hit.t + scene.epsilon_m) * scene.depth_per_m;
 }

@@ -31,12 +31,16 @@ const ROOT: [&str; 19] = [
 ];
 
 /// Options of each paper, in whose frames every pass of it occurs.
-const FRAMES: [(&str, &str); 15] = [
+const FRAMES: [(&str, &str); 16] = [
     ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --variant all --object teapot"),
     (
         "lava",
         "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --simulation sph --rheology basalt --object box \
          --variant gpu-driven",
+    ),
+    (
+        "lava",
+        "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --splat-shading deferred --culling facing",
     ),
     ("gas", "--size 45x31 --steps 8 --table 8 --variant all"),
     ("gas", "--size 45x31 --steps 8 --table 8 --lists tiles --density-cache 8 --skip-empty 0"),

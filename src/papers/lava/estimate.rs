@@ -1,6 +1,8 @@
 //! Sizes that follow from the parameters.
 
 use super::cluster::Point;
+use super::culling;
+use super::deferred::SplatShading;
 use super::gpu_driven;
 use super::parameters::{Parameters, SurfaceDraw, Variant};
 use super::rock::Rock;
@@ -23,8 +25,11 @@ impl Parameters {
         let pixels = f64::from(self.width) * f64::from(self.height);
         let vertices: usize = objects.iter().map(|mesh| mesh.positions.len()).sum();
         let indices: usize = objects.iter().map(|mesh| mesh.indices.len()).sum();
+        let is_deferred = self.splat_shading == SplatShading::Deferred;
+        let is_splatted = self.surface_draw(variant) == SurfaceDraw::Splats;
+        let blended = if is_deferred && is_splatted { 2.0 * TEXEL } else { 0.0 };
         let bytes = [
-            ("size", (TEXEL + 8.0) * pixels),
+            ("size", (TEXEL + 8.0 + blended) * pixels),
             ("rock", size_of_val(&rock.texels[..]) as f64),
             ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
         ];
@@ -35,8 +40,9 @@ impl Parameters {
         let heights = 4.0 * f64::from(self.density[0]) * f64::from(self.density[2]);
         let (drawn_bytes, buffers, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
+                let splat_bytes = 8.0 * splats + culling::bytes(self);
                 let fragments = 2.0 * splats * (1.0 + self.splat_pixels().min(pixels));
-                (("splats", 8.0 * splats), None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
+                (("splats", splat_bytes), None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
             }
             SurfaceDraw::March => (("density", heights), Some(("density", heights)), vec![("size", pixels)]),
         };

@@ -12,6 +12,10 @@ fn the_scene_holds_what_the_shaders_read() {
         "lava/visibility-sph.frag",
         "lava/blending-free.frag",
         "lava/blending-sph.frag",
+        "lava/deferred-blending-free.frag",
+        "lava/deferred-blending-sph.frag",
+        "lava/deferred-free.frag",
+        "lava/deferred-sph.frag",
         "lava/march-free.frag",
         "lava/march-sph.frag",
         "lava/particles.vert",
@@ -20,6 +24,8 @@ fn the_scene_holds_what_the_shaders_read() {
         "lava/object-free.frag",
         "lava/object-sph.frag",
         "lava/lava-light.comp",
+        "lava/cull-kept.comp",
+        "lava/cull-culled.comp",
     ] {
         check_block::<SceneBlock>(shader, "scene");
     }

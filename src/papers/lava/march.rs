@@ -7,26 +7,12 @@ use ash::vk;
 
 use super::highest::highest;
 use super::highest_rows::highest_rows;
-use super::parameters::{Parameters, Shading};
+use super::parameters::Parameters;
+use super::rays::{RayConstants, rays};
 use super::scene::Scene;
 use super::targets::{Context, FAR, ZERO};
 use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Pass};
 use crate::host_block;
-
-host_block! {
-    struct RayConstants {
-        drift_m: [f32; 2],
-        mode: u32,
-        near_m: f32,
-        eye_m: [f32; 3],
-        far_m: f32,
-        first: [f32; 3],
-        _pad: f32,
-        across: [f32; 3],
-        _pad_2: f32,
-        down: [f32; 3],
-    }
-}
 
 host_block! {
     pub(super) struct FieldConstants {
@@ -41,7 +27,6 @@ pub struct March {
     highest: Pass,
     field: FieldConstants,
     march: Pass,
-    shading: Shading,
     rays: RayConstants,
 }
 
@@ -75,14 +60,12 @@ impl March {
             .color(sums, ZERO, Blend::Replace)
             .depth(depth, FAR, DepthTest::LessWrite)
             .build(context.shaders)?;
-        let shading = context.parameters.shading;
         let field = FieldConstants { columns, rows };
         Ok(March {
             highest_rows: highest_rows(context, scene, &found, &heights)?,
             highest: highest(context.shaders, &found)?,
             field,
             march,
-            shading,
             rays: rays(context.parameters),
         })
     }
@@ -103,32 +86,8 @@ impl March {
         frame.compute(&self.highest, |dispatch| {
             dispatch.constants(&self.field).threads(1, 1, 1);
         })?;
-        let constants = RayConstants { drift_m: [drift_m, 0.0], mode: self.shading.mode(), ..self.rays };
         frame.graphics(&self.march, |draw| {
-            draw.constants(&constants).vertices(3);
+            draw.constants(&self.rays.drifted(drift_m)).vertices(3);
         })
-    }
-}
-
-/// Directions whose length along the view is 1, so that a factor of one is a depth.
-fn rays(parameters: &Parameters) -> RayConstants {
-    let camera = &parameters.camera;
-    let view = camera.view();
-    let [right, up, back] = [view.row(0), view.row(1), view.row(2)].map(|row| row.truncate());
-    let half = (0.5 * camera.vertical_fov_rad).tan();
-    let first = half * up - half * parameters.aspect() * right - back;
-    let across = 2.0 * half * parameters.aspect() / parameters.width as f32 * right;
-    let down = -2.0 * half / parameters.height as f32 * up;
-    RayConstants {
-        drift_m: [0.0; 2],
-        mode: 0,
-        near_m: camera.near_m,
-        eye_m: camera.eye.to_array(),
-        far_m: camera.far_m,
-        first: first.to_array(),
-        _pad: 0.0,
-        across: across.to_array(),
-        _pad_2: 0.0,
-        down: down.to_array(),
     }
 }

@@ -21,6 +21,8 @@ mod blending;
 mod cameras;
 mod cluster;
 mod color;
+mod culling;
+mod deferred;
 mod density;
 mod estimate;
 pub mod experiments;
@@ -41,6 +43,7 @@ pub mod parameters;
 mod particles;
 mod pattern;
 mod placement;
+mod rays;
 mod read_back;
 mod read_density;
 mod read_positions;
@@ -71,6 +74,8 @@ use crate::scene::{Camera, Mesh};
 pub use self::animate::{Animate, State};
 pub use self::cameras::CAMERAS;
 pub use self::cluster::{Clusters, Point};
+pub use self::culling::{Kept, SplatCulling};
+pub use self::deferred::SplatShading;
 pub use self::extract::Accepted;
 pub use self::gpu_driven::{Cells, GpuDriven};
 pub use self::method::Method;
@@ -252,6 +257,13 @@ impl Paper for Lava {
                 Target::image("surface-carried", &pass.carried).of(carried),
             ]
         });
+        let of_deferred = self.splatting.deferred().into_iter().flat_map(|deferred| {
+            [
+                Target::image("blended-normals", &deferred.normals)
+                    .of("sum of weighted unit normals along x, y, z, sum of weights in alpha"),
+                Target::image("blended-depths", &deferred.depths).of("sum of weighted depths in red, metres"),
+            ]
+        });
         let targets = vec![
             Target::image("positions", positions).of("x, y, z in metres"),
             Target::image("velocities", velocities).of(motion),
@@ -267,7 +279,7 @@ impl Paper for Lava {
             Target::image("picture", &self.splatting.normalisation.picture)
                 .of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
         ];
-        targets.into_iter().chain(of_a_fluid).collect()
+        targets.into_iter().chain(of_a_fluid).chain(of_deferred).collect()
     }
 }
 

@@ -5,6 +5,8 @@ use glam::Vec3;
 use super::blackbody::HOTTEST_K;
 use super::cameras::{self, CAMERAS};
 use super::color;
+use super::culling::SplatCulling;
+use super::deferred::SplatShading;
 use super::sph;
 use super::sph::parameters::{Flow, Simulation};
 use super::splats::SplatShape;
@@ -131,6 +133,10 @@ pub struct Parameters {
     pub splat_radius_m: f32,
     /// Outline of a splat.
     pub splat_shape: SplatShape,
+    /// Place of the colours of splats.
+    pub splat_shading: SplatShading,
+    /// Splats that are left out.
+    pub culling: SplatCulling,
     /// Depth behind the nearest splat within which a fragment is blended, metres (eq. 7.1), above 0 and at most 1000.
     pub epsilon_m: f32,
     /// Distance from the borders in metres over which the height sinks to 0, 0 to 1000.
@@ -182,6 +188,8 @@ impl Default for Parameters {
             splats: [600, 150],
             splat_radius_m: 0.020625,
             splat_shape: SplatShape::Disc,
+            splat_shading: SplatShading::Gouraud,
+            culling: SplatCulling::Off,
             epsilon_m: 0.05,
             border_m: 0.2,
             simulation: Simulation::Free,
@@ -282,6 +290,14 @@ impl Parameters {
                 .help("Radius of a splat, at most the shortest side of the space")
                 .section("7.1"),
             Parameter::new("splat-shape", field!(Parameters.splat_shape)).help("Outline of a splat").section("9"),
+            Parameter::new("splat-shading", field!(Parameters.splat_shading))
+                .help("Splats' colours blended, or one for each pixel")
+                .section("9")
+                .cost(Cost::Pipelines),
+            Parameter::new("culling", field!(Parameters.culling))
+                .help("Splats that are left out without a change to the picture")
+                .section("9")
+                .cost(Cost::Pipelines),
             Parameter::new("epsilon", field!(Parameters.epsilon_m))
                 .range(up_to_1000)
                 .unit("metres")

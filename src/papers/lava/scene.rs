@@ -97,12 +97,22 @@ impl Scene {
         }
     }
 
-    /// The same of a shader that colours the lava by its temperatures.
+    /// The pass of the shader of that stem that colours the lava by its temperatures.
+    pub(super) fn colored(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
+        match &self.fluid {
+            None => pass(&format!("{stem}-free.frag")),
+            Some(fluid) => pass(&format!("{stem}-sph.frag"))
+                .with("temperatures", &fluid.temperatures)
+                .with("carried", &fluid.carried),
+        }
+    }
+
+    /// The same of one that also knows where there is lava.
     pub(super) fn hot(&self, pass: impl FnOnce(&str) -> PassBuilder, stem: &str) -> PassBuilder {
-        let pass = self.bounded(pass, stem);
+        let pass = self.colored(pass, stem);
         match &self.fluid {
             None => pass,
-            Some(fluid) => pass.with("temperatures", &fluid.temperatures).with("carried", &fluid.carried),
+            Some(fluid) => pass.with("bed", &fluid.bed),
         }
     }
 

@@ -25,7 +25,7 @@ use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{
-    Bed, DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Sides, Simulation, Variant,
+    Bed, DRAWN, Kept, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Sides, Simulation, Variant,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMapSource, Mesh, promised_triangles};
@@ -212,6 +212,10 @@ impl Study for Setup {
         let mut metrics = Vec::with_capacity(measured.len());
         for (built, measurement) in measured {
             let mut results = results(&self.parameters, &built.paper, measurement);
+            if let Some(Kept { splats, clusters, of_clusters }) = built.paper.splatting.kept(&machine.device)? {
+                let counts = [("kept_splats", splats), ("kept_clusters", clusters), ("splat_clusters", of_clusters)];
+                results.extend(entries(counts.map(|(name, count)| (name, json!(count)))));
+            }
             results.extend(entries([experiments::points::measure(machine, &built.paper)?]));
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::culling::{Culling, Kept};
 use super::parameters::Parameters;
 use super::scene::Scene;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::{Buffer, Draw, Error, Pass, Topology};
+use crate::gpu::{Buffer, Device, Draw, Error, Frame, Pass, Topology};
 use crate::host_block;
 use crate::measure::parameter::Choice;
 
@@ -41,6 +42,8 @@ pub struct Splats {
     vertices: Arc<Buffer>,
     count: u32,
     instanced: bool,
+    /// `None` where all of them are drawn.
+    culling: Option<Culling>,
 }
 
 impl Splats {
@@ -48,31 +51,59 @@ impl Splats {
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, instanced: bool) -> Result<Self, Error> {
+    pub fn new(context: Context<'_>, scene: &Scene, instanced: bool) -> Result<Self, Error> {
         let places = places(context.parameters);
-        let usage = vk::BufferUsageFlags::VERTEX_BUFFER;
+        let usage = vk::BufferUsageFlags::VERTEX_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
         let vertices = context.upload("splats", usage, bytemuck::cast_slice(&places))?;
-        Ok(Splats { vertices, count: places.len() as u32, instanced })
+        let culling = Culling::new(context, scene, &vertices, instanced)?;
+        Ok(Splats { vertices, count: places.len() as u32, instanced, culling })
     }
 
     /// A pass that draws the splats of a scene.
     pub fn pass(&self, scene: &Scene, name: &'static str, section: &'static str, fragment: &str) -> PassBuilder {
-        let splats = if self.instanced {
-            Pass::graphics(name, section, "lava/splat-quad.vert", fragment)
-                .instances::<Place>(&self.vertices)
-                .topology(Topology::TriangleStrip)
+        let pass = if self.instanced {
+            Pass::graphics(name, section, "lava/splat-quad.vert", fragment).topology(Topology::TriangleStrip)
         } else {
             Pass::graphics(name, section, "lava/splat.vert", fragment)
                 .geometry("lava/splat.geom")
-                .vertices::<Place>(&self.vertices)
                 .topology(Topology::Points)
         };
-        splats.with("scene", &scene.block).with("normal_height", &scene.normal_height)
+        let pass = match &self.culling {
+            Some(culling) => culling.splats::<Place>(pass, &self.vertices),
+            None if self.instanced => pass.instances::<Place>(&self.vertices),
+            None => pass.vertices::<Place>(&self.vertices),
+        };
+        pass.with("scene", &scene.block).with("normal_height", &scene.normal_height)
+    }
+
+    /// Finds the splats to draw, where some are left out.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn cull(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.culling.as_ref().map_or(Ok(()), |culling| culling.record(frame))
+    }
+
+    /// Sets the eye to that of the parameters' camera.
+    pub fn set_eye(&mut self, parameters: &Parameters) {
+        if let Some(culling) = &mut self.culling {
+            culling.set_eye(parameters);
+        }
+    }
+
+    /// Reads back what the last frame drew; `None` where that is every splat.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn kept(&self, device: &Arc<Device>) -> Result<Option<Kept>, Error> {
+        self.culling.as_ref().map(|culling| culling.kept(device)).transpose()
     }
 
     /// Draws the splats by a [`Splats::pass`].
     pub fn draw(&self, draw: &mut Draw<'_>) {
-        if self.instanced {
+        if self.culling.is_some() {
+            draw.indices_indirect()
+        } else if self.instanced {
             draw.instances(4, self.count)
         } else {
             draw.vertices(self.count)

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use super::FLOORS;
 use super::blending::Blending;
+use super::culling::Kept;
+use super::deferred::{Deferred, SplatShading};
 use super::march::March;
 use super::normalisation::Normalisation;
 use super::parameters::{Parameters, SurfaceDraw};
@@ -12,7 +14,7 @@ use super::scene::{Scene, Sheet};
 use super::splats::Splats;
 use super::targets::{Context, DEPTH, EMPTY, FLOATS};
 use super::visibility::Visibility;
-use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Device, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
 
 /// The stage.
 pub struct Splatting {
@@ -38,9 +40,15 @@ struct SplatPasses {
     splats: Splats,
     /// Depths of eq. 7.1.
     visibility: Visibility,
-    /// Sums of eq. 7.2.
-    blending: Blending,
+    shading: Shading,
     floor: Pass,
+}
+
+/// By [`SplatShading`].
+enum Shading {
+    /// Sums of eq. 7.2.
+    Gouraud(Blending),
+    Deferred(Deferred),
 }
 
 impl Splatting {
@@ -63,14 +71,19 @@ impl Splatting {
         let sums = context.target("accumulated-colors", FLOATS, parameters.width, parameters.height)?;
         let drawing = match draw {
             SurfaceDraw::Splats => {
-                let splats = Splats::new(context, instanced)?;
+                let splats = Splats::new(context, &scene, instanced)?;
                 let visibility = Visibility::new(context, &scene, &splats, &depth)?;
-                let blending = Blending::new(context, &scene, &splats, &depth, &sums)?;
+                let shading = match parameters.splat_shading {
+                    SplatShading::Gouraud => Shading::Gouraud(Blending::new(context, &scene, &splats, &depth, &sums)?),
+                    SplatShading::Deferred => {
+                        Shading::Deferred(Deferred::new(context, &scene, &splats, &depth, &sums)?)
+                    }
+                };
                 let floor = splats
                     .pass(&scene, FLOORS[2].1, "7.1", EMPTY)
                     .color(&sums, Load::Keep, Blend::Masked)
                     .build(shaders)?;
-                Drawing::Splats(SplatPasses { splats, visibility, blending, floor })
+                Drawing::Splats(SplatPasses { splats, visibility, shading, floor })
             }
             SurfaceDraw::March => Drawing::March(March::new(context, &scene, &depth, &sums)?),
         };
@@ -82,13 +95,38 @@ impl Splatting {
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub(super) fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock) -> Result<(), Error> {
+    pub fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock) -> Result<(), Error> {
         self.scene.set(parameters, rock)?;
         self.normalisation.set_tone(parameters);
-        if let Drawing::March(march) = &mut self.drawing {
-            march.set_rays(parameters);
+        match &mut self.drawing {
+            Drawing::March(march) => march.set_rays(parameters),
+            Drawing::Splats(SplatPasses { splats, shading, .. }) => {
+                splats.set_eye(parameters);
+                if let Shading::Deferred(deferred) = shading {
+                    deferred.set_rays(parameters);
+                }
+            }
         }
         Ok(())
+    }
+
+    /// The splats' normals and depths; `None` where their colours are blended, or rays are drawn.
+    pub fn deferred(&self) -> Option<&Deferred> {
+        match &self.drawing {
+            Drawing::Splats(SplatPasses { shading: Shading::Deferred(deferred), .. }) => Some(deferred),
+            _ => None,
+        }
+    }
+
+    /// Reads back the splats that the last frame drew; `None` where those are all, or rays are drawn.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn kept(&self, device: &Arc<Device>) -> Result<Option<Kept>, Error> {
+        match &self.drawing {
+            Drawing::Splats(SplatPasses { splats, .. }) => splats.kept(device),
+            Drawing::March(_) => Ok(None),
+        }
     }
 
     /// Draws the surface; the rock has drifted `drift_m` along x.
@@ -97,9 +135,13 @@ impl Splatting {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
         match &self.drawing {
-            Drawing::Splats(SplatPasses { splats, visibility, blending, .. }) => {
+            Drawing::Splats(SplatPasses { splats, visibility, shading, .. }) => {
+                splats.cull(frame)?;
                 visibility.record(frame, splats)?;
-                blending.record(frame, splats, drift_m)?;
+                match shading {
+                    Shading::Gouraud(blending) => blending.record(frame, splats, drift_m)?,
+                    Shading::Deferred(deferred) => deferred.record(frame, splats, drift_m)?,
+                }
             }
             Drawing::March(march) => march.record(frame, drift_m)?,
         }

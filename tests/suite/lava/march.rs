@@ -11,7 +11,7 @@ use super::splatting::{low_camera, ridge, stage};
 use crate::common::gpu_test;
 
 /// Direction of the ray through a pixel's middle, its length along the view 1.
-fn direction(parameters: &Parameters, at: usize) -> DVec3 {
+pub(super) fn direction(parameters: &Parameters, at: usize) -> DVec3 {
     let (width, height) = (parameters.width as usize, parameters.height as usize);
     let camera = &parameters.camera;
     let forward = (camera.target - camera.eye).as_dvec3().normalize();

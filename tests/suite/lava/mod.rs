@@ -3,6 +3,8 @@
 mod animation;
 mod bed;
 mod blackbody;
+mod culling;
+mod deferred;
 mod density;
 mod fluid;
 mod frames;

@@ -42,6 +42,8 @@ pub struct Pixel {
     pub depth: f64,
     /// Sum of weighted values, sum of weights (eq. 7.2).
     pub sums: [f64; 2],
+    /// Sum of weighted eye-space depths.
+    pub depths: f64,
     /// Splats that lie epsilon or more behind.
     pub hidden: u32,
     /// Rounding may decide otherwise whether some splat counts.
@@ -107,7 +109,7 @@ impl Splats {
             }
         }
         let depth = seen.iter().map(|s| s.0).reduce(f64::min)?;
-        let (mut sums, mut hidden) = ([0.0; 2], 0);
+        let (mut sums, mut depths, mut hidden) = ([0.0; 2], 0.0, 0);
         for (d, weight, value) in seen {
             let behind = d - depth;
             is_close_call |= (behind - self.epsilon).abs() < CLOSE * self.radius / EDGE_ON;
@@ -115,10 +117,11 @@ impl Splats {
             if d < depth + self.epsilon {
                 sums[0] += weight * value;
                 sums[1] += weight;
+                depths += weight * d;
             } else {
                 hidden += 1;
             }
         }
-        Some(Pixel { depth, sums, hidden, is_close_call })
+        Some(Pixel { depth, sums, depths, hidden, is_close_call })
     }
 }
