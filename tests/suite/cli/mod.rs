@@ -25,6 +25,7 @@ mod hostile_cost;
 mod interruption;
 mod kubernetes;
 mod lava;
+mod lava_chapter_9;
 mod meshes;
 mod outputs;
 mod pages;

@@ -1,12 +1,18 @@
 //! The thesis's figures, its frame rate, and growth of the method's times.
 
+mod cooling;
+mod culling;
 pub mod figures;
 mod flow;
+mod gaps;
 mod motion;
+mod normals;
 pub mod points;
+mod radiance;
 mod readback;
 mod results;
 mod scaling;
+mod shading;
 mod strip;
 mod surface;
 
@@ -15,9 +21,10 @@ use self::scaling::Axis;
 use super::parameters::Variant;
 use super::setup::Setup;
 use crate::field;
-use crate::measure::experiment::{self, Experiment};
+use crate::measure::experiment::{self, Experiment, NamedTable};
+use crate::measure::machine::Machine;
 use crate::measure::parameter::{Parameter, Range};
-use crate::measure::sweep::Point;
+use crate::measure::sweep::{Point, Row};
 use crate::measure::{Error, bench};
 
 type Context<'a> = experiment::Context<'a, Setup>;
@@ -48,13 +55,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         refuses: if figure.name == "fig-8.5" { REFUSED_BY_FIG_8_5 } else { REFUSED_BY_FIGURES },
         run: draw,
     });
-    let measured = |name, help, run| Experiment {
-        name,
-        help,
-        options: &[],
-        refuses: &[("frame", "this experiment measures frames from 0 on; give `frames`")],
-        run,
-    };
+    let measured = |name, help, run| Experiment { name, help, options: &[], refuses: REFUSED_BY_MEASURES, run };
     let others = [
         measured("results", "Chapter 8: frames a second, beside the thesis's 20", results as fn(&mut Context<'_>) -> _),
         measured("readback", "Both variants in turn: what readbacks and waits cost, stage by stage", readbacks),
@@ -69,7 +70,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
     };
     let flow = Experiment {
         name: "flow",
-        help: "The fluid over time: effusion, front, area, thickness and temperatures",
+        help: "Chapter 9, \"Improved particle simulation\": the fluid over time: effusion, front, area, thickness and temperatures",
         options: &[],
         refuses: &[("frame", "this experiment follows frames from 0 on; give `frames`")],
         run: flows,
@@ -88,9 +89,66 @@ pub fn all() -> Vec<Experiment<Setup>> {
         refuses: REFUSED_BY_STRIPS,
         run: strip_of,
     };
-    figures.into_iter().chain(others).chain([surface, motion, flow, strip]).collect()
+    figures.into_iter().chain(others).chain([surface, motion, strip, flow]).chain(of_chapter_9()).collect()
 }
 
+/// An experiment for each heading of chapter 9 behind the first, which is `flow`.
+fn of_chapter_9() -> [Experiment<Setup>; 6] {
+    let still = |name, help, run, refuses| Experiment { name, help, options: &["frame"], refuses, run };
+    [
+        Experiment {
+            name: "cooling",
+            help: "Chapter 9, \"Temperature variables and heat transfer simulations\": a flow that radiates beside one that does not",
+            options: &[],
+            refuses: REFUSED_BY_MEASURES,
+            run: coolings,
+        },
+        Experiment {
+            name: "radiance",
+            help: "Chapter 9, \"Convert lava temperature to emitted radiance\": pixels' chromaticities beside Planck's law",
+            options: &[],
+            refuses: &[("color", "it is a black body's"), ("temperatures", "the experiment has its own")],
+            run: radiances,
+        },
+        Experiment {
+            name: "shading",
+            help: "Chapter 9, \"Look at other shading techniques\": blended colours, deferred shading and rays: times and contrast",
+            options: &[],
+            refuses: REFUSED_BY_SHADING,
+            run: shadings,
+        },
+        still(
+            "normals",
+            "Chapter 9, \"Calculate the surface normals by accumulation\": degrees from the isosurface's, beside differences",
+            normals_of as fn(&mut Context<'_>) -> _,
+            &[("surface", "the mean and the crossing are compared")],
+        ),
+        still(
+            "gaps",
+            "Chapter 9, \"Eliminate large gaps between splats\": pixels that show what lies behind, from 32 cameras",
+            gaps_between,
+            &[("camera", "the experiment has its own"), ("splat-shape", "all of them are compared")],
+        ),
+        Experiment {
+            name: "culling",
+            help: "Chapter 9, \"Culling\": splats and clusters that stay from six cameras, and their times",
+            options: &[],
+            refuses: REFUSED_BY_CULLING,
+            run: cullings,
+        },
+    ]
+}
+
+const REFUSED_BY_MEASURES: &[(&str, &str)] = &[FROM_0_ON];
+const REFUSED_BY_SHADING: &[(&str, &str)] = &[
+    FROM_0_ON,
+    ("surface-draw", "splats and rays are compared"),
+    ("splat-shading", "both are compared"),
+    ("shading", "the finished pictures are compared"),
+];
+const REFUSED_BY_CULLING: &[(&str, &str)] =
+    &[FROM_0_ON, ("culling", "all ways are compared"), ("surface-draw", "splats are culled, rays are not")];
+const FROM_0_ON: (&str, &str) = ("frame", "this experiment measures frames from 0 on; give `frames`");
 const REFUSED_BY_STRIPS: &[(&str, &str)] = &[
     ("json", "a strip is a picture; the experiment flow has a table"),
     ("csv", "a strip is a picture; the experiment flow has rows"),
@@ -192,6 +250,69 @@ fn flows(context: &mut Context<'_>) -> Result<(), Error> {
     context.save(&context.file("-temperatures.svg"), temperatures.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
     machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn coolings(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    cooling::check(&context.setup)?;
+    let mut machine = context.open()?;
+    let frames = context.measure.frames.unwrap_or(flow::FRAMES).max(1);
+    let table = cooling::table(&mut machine, &context.setup, frames)?;
+    context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn radiances(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    radiance::check(&context.setup)?;
+    let mut machine = context.open()?;
+    let table = radiance::table(&mut machine, &context.setup)?;
+    context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn shadings(context: &mut Context<'_>) -> Result<(), Error> {
+    let points = shading::points(&context.setup);
+    measured(context, &points, |machine, rows| {
+        Ok(("shadings", shading::table(rows, &shading::contrasts(machine, &points)?)))
+    })
+}
+
+fn normals_of(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let table = normals::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
+    context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn gaps_between(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let table = gaps::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
+    context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn cullings(context: &mut Context<'_>) -> Result<(), Error> {
+    let points = culling::points(&context.setup, context.given.has("camera"));
+    measured(context, &points, |_, rows| Ok(("kept", culling::table(rows))))
+}
+
+/// Measures the points, and publishes their runs with a named table of them.
+fn measured(
+    context: &mut Context<'_>,
+    points: &[Point<Setup>],
+    table: impl FnOnce(&mut Machine, &[Row]) -> Result<NamedTable, Error>,
+) -> Result<(), Error> {
+    check(points)?;
+    let mut machine = context.open()?;
+    let swept = context.sweep(&mut machine, points)?;
+    let table = table(&mut machine, &swept.rows)?;
+    let runs = swept.rows.into_iter().map(|row| row.run).collect();
+    context.publish_runs(&machine, runs, String::new(), &[], &[table])?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(()), Err)
 }
 
 fn motions(context: &mut Context<'_>) -> Result<(), Error> {

@@ -24,7 +24,7 @@ pub fn points(setup: &Setup) -> Vec<Point<Setup>> {
 }
 
 /// The stage of the thesis that a pass belongs to.
-fn stage(pass: &Pass) -> &'static str {
+pub fn stage(pass: &Pass) -> &'static str {
     match pass.section.as_deref().and_then(|section| section.split('.').next()) {
         Some("5") => "one",
         Some("6") => "two",

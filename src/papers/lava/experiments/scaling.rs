@@ -6,6 +6,7 @@ use serde_json::json;
 use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::result_table::ResultTable;
+use crate::measure::stress::scaling as fitted;
 use crate::measure::sweep::{Point, Row};
 use crate::papers::lava::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
@@ -103,29 +104,20 @@ fn curves(rows: &[&Row]) -> Vec<Curve> {
     curves
 }
 
-/// The exponent of growth: the slope of time over count in logarithms, by least squares. Absent with fewer than two
-/// points.
-fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> =
-        points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();
-    let n = logs.len() as f64;
-    let (mean_x, mean_y) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
-    let spread: f64 = logs.iter().map(|p| (p.0 - mean_x).powi(2)).sum();
-    let slope = logs.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum::<f64>() / spread;
-    Some(slope).filter(|s| s.is_finite())
-}
-
 /// The axis that a row lies on.
 fn rows_of(rows: &[Row], axis: Axis) -> Vec<&Row> {
     rows.iter().filter(|row| row.label.ends_with(&format!(" {}", axis.as_str()))).collect()
 }
 
-/// Times of all passes at all points, and their exponents.
+/// Times of all passes at all points, and the exponents of their growth with 95 % intervals.
 pub fn table(rows: &[Row]) -> ResultTable {
     let mut table = Vec::new();
     for axis in Axis::ALL {
         for curve in curves(&rows_of(rows, axis)) {
-            let growth = exponent(&curve.points);
+            // Too few points for a knee.
+            let fit = fitted(&curve.points).and_then(|scaling| scaling.segments.into_iter().next());
+            let exponent = fit.as_ref().map(|segment| segment.exponent);
+            let interval = fit.and_then(|segment| segment.interval);
             for (x, ms) in &curve.points {
                 table.push(vec![
                     json!(axis.as_str()),
@@ -133,14 +125,16 @@ pub fn table(rows: &[Row]) -> ResultTable {
                     json!(curve.pass),
                     json!(curve.clock),
                     json!(ms),
-                    json!(growth),
+                    json!(exponent),
+                    json!(interval.map(|[low, _]| low)),
+                    json!(interval.map(|[_, high]| high)),
                 ]);
             }
         }
     }
     ResultTable {
         title: "Scaling: where each pass's time goes",
-        columns: &["axis", "count", "pass", "clock", "ms", "exponent"],
+        columns: &["axis", "count", "pass", "clock", "ms", "exponent", "from", "to"],
         rows: table,
     }
 }
@@ -170,15 +164,51 @@ pub fn plot(rows: &[Row], axis: Axis) -> Result<Option<String>, Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::exponent;
+    use super::*;
+    use crate::measure::statistics::summarize;
+    use crate::report::example;
+    use crate::report::record::PassKind;
+
+    fn rows_of_power(axis: Axis, counts: &[f64], ms: impl Fn(usize, f64) -> f64) -> Vec<Row> {
+        let row = |(at, &x): (usize, &f64)| {
+            let mut pass = example::pass("density", PassKind::Graphics);
+            pass.gpu_ms = summarize(&[ms(at, x)]);
+            let mut run = example::run();
+            run.passes = vec![pass];
+            Row { label: format!("{x} {}", axis.as_str()), x, run }
+        };
+        counts.iter().enumerate().map(row).collect()
+    }
+
+    /// Of a power law with a scatter of a few per cent, and of one without.
+    #[test]
+    fn exponents_stand_with_their_intervals() {
+        let scatter = [1.03, 0.98, 1.01, 0.97, 1.02];
+        let counts = [1e4, 3.1623e4, 1e5, 3.16228e5, 1e6];
+        let mut rows = rows_of_power(Axis::Particles, &counts, |at, x| 2e-4 * x.powf(0.8) * scatter[at]);
+        rows.extend(rows_of_power(Axis::Grid, &counts[..4], |_, x| 1e-3 * x));
+        let table = table(&rows);
+        assert_eq!(table.rows.len(), 9);
+        let value = |row: usize, column: &str| {
+            let at = table.columns.iter().position(|name| *name == column).unwrap();
+            table.rows[row][at].as_f64().unwrap_or_else(|| panic!("{column}: {:?}", table.rows[row]))
+        };
+        let (exponent, from, to) = (value(0, "exponent"), value(0, "from"), value(0, "to"));
+        assert!(from < 0.8 && 0.8 < to && to - from < 0.1 && (exponent - 0.8).abs() < 0.02, "{exponent} {from} {to}");
+        assert!((value(8, "exponent") - 1.0).abs() < 1e-9 && value(8, "to") - value(8, "from") < 1e-6);
+        assert!(plot(&rows, Axis::Grid).unwrap().is_some() && plot(&rows, Axis::Splats).unwrap().is_none());
+    }
 
     #[test]
-    fn the_exponent_is_the_slope_in_logarithms() {
-        let power = |k: f64| [1.0, 10.0, 300.0].map(|x: f64| (x, 2.5 * x.powf(k)));
-        for k in [0.0, 0.5, 1.0, 2.0] {
-            assert!((exponent(&power(k)).unwrap() - k).abs() < 1e-12);
+    fn as_many_particles_overlap_at_every_count() {
+        let setup = Setup::default();
+        for point in Axis::Particles.points(&setup) {
+            let p = &point.study.parameters;
+            let overlap = f64::from(p.particles) * f64::from(p.radius_m).powi(3);
+            assert!(
+                (overlap / (40_000.0 * f64::from(setup.parameters.radius_m).powi(3)) - 1.0).abs() < 1e-5,
+                "{overlap}"
+            );
         }
-        assert_eq!(exponent(&[(1.0, 2.0)]), None);
-        assert_eq!(exponent(&[]), None);
     }
 }

@@ -4,40 +4,54 @@
 //! Between grid points the density is linear in the six tetrahedra of a cell (Kuhn's division), so that the isosurface is
 //! that of marching tetrahedra; on the cell's edges its vertices are those of marching cubes.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
-use crate::image::{Raster, Samples};
+use crate::gpu::ImageView;
+use crate::gpu::transfer::read_image;
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::parameter::Choice;
 use crate::measure::result_table::ResultTable;
 use crate::measure::statistics::{median, percentile};
 use crate::measure::study::Study;
-use crate::measure::{Error, Paper, picture};
+use crate::measure::{Error, picture};
 use crate::papers::lava::{SurfaceKind, Variant};
 
 /// Places along each side of a cell.
 const PLACES: usize = 4;
 
 /// Densities of a frame at its grid points.
-struct Densities {
+pub struct Densities {
     /// Points along x, y and z.
-    points: [usize; 3],
+    pub points: [usize; 3],
     /// Layers of four planes, rows along z, points along x, planes of the layer.
     values: Vec<f32>,
-    rho: f64,
+    /// Density that is accepted.
+    pub rho: f64,
+}
+
+/// A frame's targets.
+pub struct Fields {
+    /// Normals and heights in metres, row by row.
+    pub surface: Vec<[f32; 4]>,
+    positions: Vec<[f32; 4]>,
+    /// Its densities.
+    pub densities: Densities,
 }
 
 impl Densities {
-    fn at(&self, i: usize, j: usize, k: usize) -> f64 {
+    /// At a grid point; 0 beyond the grid.
+    pub fn at(&self, i: usize, j: usize, k: usize) -> f64 {
         let [x, _, z] = self.points;
         f64::from(self.values.get((((j / 4) * z + k) * x + i) * 4 + j % 4).copied().unwrap_or(0.0))
     }
 
     /// The first place from above at which the density is rho, in planes from the lowest, in cell `i`, `k` at the
     /// fractions `u` and `w` of its sides; none without one between the planes.
-    fn outermost(&self, [i, k]: [usize; 2], [u, w]: [f64; 2]) -> Option<f64> {
+    pub fn outermost(&self, [i, k]: [usize; 2], [u, w]: [f64; 2]) -> Option<f64> {
         let corner = |dx: usize, j: usize, dz: usize| {
             let last = |index: usize, count: usize| index.min(count - 1);
             self.at(last(i + dx, self.points[0]), j, last(k + dz, self.points[2]))
@@ -85,36 +99,41 @@ struct Distances {
     above: f64,
 }
 
-fn floats(raster: &Raster) -> Vec<f32> {
-    match raster.samples() {
-        Samples::F32(values) => values.clone(),
-        _ => Vec::new(),
-    }
-}
-
-fn distances(machine: &mut Machine, setup: &Setup, kind: SurfaceKind, frame: u32) -> Result<Distances, Error> {
+/// Those of a frame with that surface.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Image`], [`Error::Parameter`], [`Error::Input`].
+pub fn fields(machine: &mut Machine, setup: &Setup, kind: SurfaceKind, frame: u32) -> Result<Fields, Error> {
     let mut setup = setup.clone();
     setup.parameters.surface = kind;
     // Nothing is looked at.
     (setup.parameters.splats, setup.parameters.width, setup.parameters.height) = ([1; 2], 1, 1);
     let scene = setup.load()?;
-    let mut built = build(machine, &setup, &scene, Variant::Paper)?;
-    picture::render(machine, &mut built.paper, frame)?;
-    let targets = built.paper.targets();
-    let read = |name: &str| -> Result<Vec<f32>, Error> {
-        let target = targets.iter().find(|t| t.name == name);
-        target.map_or(Ok(Vec::new()), |target| Ok(floats(&picture::read_target(&machine.device, target)?)))
-    };
-    let (heights, positions, values) = (read("normal-height")?, read("positions")?, read("density")?);
+    let mut paper = build(machine, &setup, &scene, Variant::Paper)?.paper;
+    picture::render(machine, &mut paper, frame)?;
+    let read = |view: &Arc<ImageView>| read_image(&machine.device, view);
     let p = &setup.parameters;
-    let points = p.density.map(|n| n as usize);
-    let densities = Densities { points, values, rho: f64::from(p.rho()) };
+    Ok(Fields {
+        surface: bytemuck::pod_collect_to_vec(&read(&paper.normal_height.surface)?),
+        positions: bytemuck::pod_collect_to_vec(&read(&paper.animate.state().positions)?),
+        densities: Densities {
+            points: p.density.map(|n| n as usize),
+            values: bytemuck::pod_collect_to_vec(&read(paper.method.density())?),
+            rho: f64::from(p.rho()),
+        },
+    })
+}
+
+fn distances(machine: &mut Machine, setup: &Setup, kind: SurfaceKind, frame: u32) -> Result<Distances, Error> {
+    let Fields { surface, positions, densities } = fields(machine, setup, kind, frame)?;
+    let p = &setup.parameters;
+    let points = densities.points;
     let [x, y, z] = points;
     let space = p.space_m.as_dvec3();
     let plane_m = space.y / y as f64;
     let height_m = |i: usize, k: usize| {
         let texel = k.min(z - 1) * x + i.min(x - 1);
-        f64::from(heights.get(4 * texel + 3).copied().unwrap_or(0.0))
+        f64::from(surface.get(texel).map_or(0.0, |found| found[3]))
     };
     // Inside the border, where nothing sinks.
     let border_m = f64::from(p.border_m);
@@ -140,8 +159,8 @@ fn distances(machine: &mut Machine, setup: &Setup, kind: SurfaceKind, frame: u32
         }
     }
     let mut counts = [0u32; 2];
-    for place in positions.chunks_exact(4).take(p.particles as usize) {
-        let [px, py, pz] = [place[0], place[1], place[2]].map(f64::from);
+    for &[px, py, pz, _] in positions.iter().take(p.particles as usize) {
+        let [px, py, pz] = [px, py, pz].map(f64::from);
         if is_inside(px, space.x) && is_inside(pz, space.z) {
             let column = |at: f64, side: f64, count: usize| ((at / side * count as f64) as usize).min(count - 1);
             counts[0] += 1;
@@ -200,19 +219,27 @@ pub fn table(machine: &mut Machine, setup: &Setup, frame: u32) -> Result<ResultT
 }
 
 #[cfg(test)]
+impl Densities {
+    /// Of a function of the indices along x, y and z.
+    pub fn of(points: [usize; 3], rho: f64, value: impl Fn(usize, usize, usize) -> f64) -> Self {
+        let [x, y, z] = points;
+        let mut values = vec![0.0; 4 * x * y.div_ceil(4) * z];
+        for (j, k, i) in (0..y).flat_map(|j| (0..z).flat_map(move |k| (0..x).map(move |i| (j, k, i)))) {
+            values[(((j / 4) * z + k) * x + i) * 4 + j % 4] = value(i, j, k) as f32;
+        }
+        Densities { points, values, rho }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
     /// A density that is linear over the whole grid: its isosurface is a plane.
     #[test]
     fn a_linear_density_has_a_plane() {
-        let points = [5, 8, 6];
-        let value = |i: usize, j: usize, k: usize| 10.0 - j as f32 + 0.25 * i as f32 - 0.5 * k as f32;
-        let mut values = vec![0.0; 5 * 6 * 8];
-        for (j, k, i) in (0..8).flat_map(|j| (0..6).flat_map(move |k| (0..5).map(move |i| (j, k, i)))) {
-            values[(((j / 4) * 6 + k) * 5 + i) * 4 + j % 4] = value(i, j, k);
-        }
-        let densities = Densities { points, values, rho: 6.5 };
+        let value = |i: usize, j: usize, k: usize| 10.0 - j as f64 + 0.25 * i as f64 - 0.5 * k as f64;
+        let densities = Densities::of([5, 8, 6], 6.5, value);
         for (i, k) in (0..4).flat_map(|i| (0..4).map(move |k| (i, k))) {
             for (u, w) in [(0.0, 0.0), (0.5, 0.25), (0.25, 0.75), (0.75, 0.0)] {
                 let expected = 3.5 + 0.25 * (i as f64 + u) - 0.5 * (k as f64 + w);
