@@ -73,6 +73,7 @@ impl From<gpu::Error> for Failure {
             E::UnknownDevice { .. }
             | E::AmbiguousDevice { .. }
             | E::Limit { .. }
+            | E::Filling { .. }
             | E::Shader { .. }
             | E::Capture { .. } => Failure::Input(message),
             E::OutOfMemory { .. }

@@ -17,11 +17,9 @@ const SEEN_BYTES: u64 = 64 << 20;
 
 /// The option that leaves the cache out.
 pub fn option() -> Arg {
-    Arg::new(NO_CACHE)
-        .long(NO_CACHE)
-        .action(ArgAction::SetTrue)
-        .help_heading("Scene")
-        .help("Read mesh files anew: neither look for them in the cache of the user's folder, nor keep them there")
+    Arg::new(NO_CACHE).long(NO_CACHE).action(ArgAction::SetTrue).help_heading("Scene").help(
+        "Read mesh files and maps anew: look for neither in the cache of the user's folder, nor keep anything there",
+    )
 }
 
 /// Makes what was typed hold for all files that this process loads.

@@ -120,6 +120,13 @@ pub enum Error {
         /// Reason why the host may not read or write there.
         problem: String,
     },
+    #[error("filling {object}: {reason}")]
+    Filling {
+        /// Name of the resource that the host fills.
+        object: String,
+        /// Reason why there is nothing to fill it with, and the way out.
+        reason: String,
+    },
     #[error("pass {pass}: it lies behind the end that this frame was given")]
     BeyondEnd {
         /// Name of the pass that the host would have waited for.

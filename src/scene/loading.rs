@@ -80,6 +80,11 @@ impl Conditions {
         Conditions { watch: Watch { interrupted: &NEVER, progress: &|_, _| {} }, cache: None }
     }
 
+    /// Folder of the tiles of maps that were read before, beside that of the meshes; none to make them for one run alone.
+    pub fn tiles_folder() -> Option<PathBuf> {
+        Some(Self::current().cache.as_ref()?.with_file_name("tiles"))
+    }
+
     /// Those that [`Conditions::hold`] set, else the plain ones.
     pub(super) fn current() -> &'static Self {
         static PLAIN: Conditions = Conditions::plain();

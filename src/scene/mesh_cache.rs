@@ -8,11 +8,11 @@
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, cast_slice_mut};
 use glam::{Vec2, Vec3};
 
+use super::cache;
 use super::identity::source_sha256;
 use super::loading::MeshOptions;
 use super::{Mesh, Tags};
@@ -78,8 +78,7 @@ pub(super) fn find(folder: &Path, key: &Key) -> Option<Mesh> {
     let mut file = File::open(&path).ok()?;
     match read(&mut file) {
         Some(mesh) => {
-            // Those that are used stay longest; nothing is lost where it cannot be told.
-            let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
+            cache::touch(&path);
             Some(mesh)
         }
         None => {
@@ -147,40 +146,18 @@ pub(super) fn keep(folder: &Path, key: &Key, mesh: &Mesh) {
         checksum: checksum.finalize(),
         one: 1,
     };
-    evict(folder, MOST_BYTES - size_bytes);
+    cache::evict(folder, ENDING, MOST_BYTES - size_bytes);
     let _ = file::write_unsynced(&key.path(folder), |file| {
         file.write_all(bytes_of(&start))?;
         lists.iter().try_for_each(|list| file.write_all(list))
     });
 }
 
-/// Removes the entries that were not used for longest, until the others take at most so many bytes.
-fn evict(folder: &Path, most_bytes: u64) {
-    let mut entries: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.extension().is_some_and(|ending| ending == ENDING)
-            && let Ok(metadata) = entry.metadata()
-        {
-            entries.push((metadata.modified().unwrap_or(SystemTime::UNIX_EPOCH), metadata.len(), path));
-        }
-    }
-    entries.sort_unstable();
-    let mut taken: u64 = entries.iter().map(|(_, bytes, _)| bytes).sum();
-    for (_, bytes, path) in entries {
-        if taken <= most_bytes {
-            return;
-        }
-        // Another process may have been first.
-        let _ = fs::remove_file(path);
-        taken -= bytes;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::shapes;
+    use std::time::SystemTime;
 
     fn key(text: &str) -> Key {
         Key(content::sha256(text.as_bytes()))
@@ -241,7 +218,7 @@ mod tests {
         assert!(find(folder, &key("a")).is_some(), "it is the newest now");
         let bytes = fs::metadata(key("a").path(folder)).unwrap().len();
         fs::write(folder.join("notes"), "no entry").unwrap();
-        evict(folder, 2 * bytes);
+        cache::evict(folder, ENDING, 2 * bytes);
         let is_there = |name| key(name).path(folder).exists();
         assert_eq!((is_there("a"), is_there("b"), is_there("c")), (true, false, true));
         assert!(folder.join("notes").exists());

@@ -6,6 +6,7 @@
 
 mod binary;
 mod bounds;
+pub mod cache;
 mod camera;
 mod creases;
 mod divide;
@@ -33,7 +34,9 @@ pub use bounds::Bounds;
 pub use camera::Camera;
 pub use divide::divided;
 pub use error::{Asset, Error, Fault, Place};
-pub use height_map::{Coordinates, Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
+pub use height_map::{
+    Coordinates, Geographic, HeightMap, HeightMapSource, RowSource, Rows, Samples, Suspect, Voids, volcano,
+};
 pub use identity::source_sha256;
 pub use light::Light;
 pub use loading::MeshOptions;

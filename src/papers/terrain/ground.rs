@@ -78,26 +78,12 @@ pub const REPEATED: u32 = 2;
 /// The most by which the columns may miss a whole turn, in nodes.
 const WHOLE_TURN: f64 = 1e-3;
 
-/// Most samples of a side that the slope is taken of.
-const SLOPE_SAMPLES: u32 = 512;
 /// Steep land of a map, over its slope's root of the mean square; of maps steeper than one to one.
 const STEEP: f64 = 2.0;
 
 /// The slope of a map's steep land, metres for a metre, at least 1.
 fn steepness(map: &HeightMap) -> f64 {
-    let [columns, rows] = [map.width(), map.height()].map(|side| {
-        let step = side.div_ceil(SLOPE_SAMPLES) as usize;
-        (0..side - 1).step_by(step)
-    });
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (column, row) in rows.flat_map(|row| columns.clone().map(move |column| (column, row))) {
-        let height_m = f64::from(map.height_m(column, row));
-        let beside = f64::from(map.height_m(column + 1, row)) - height_m;
-        let below = f64::from(map.height_m(column, row + 1)) - height_m;
-        sum += (DVec2::new(beside, below) / map.spacing_m()).length_squared();
-        count += 1.0;
-    }
-    f64::max(STEEP * f64::sqrt(sum / count) - 1.0, 1.0)
+    f64::max(STEEP * map.slope() - 1.0, 1.0)
 }
 
 impl Ground {

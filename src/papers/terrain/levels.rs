@@ -9,6 +9,7 @@ use ash::vk;
 
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Cover, Shape};
+use super::tile_file::TileFile;
 use super::tiles::Tiles;
 use crate::gpu::bindings::Resource;
 use crate::gpu::transfer::{copy_rectangle, upload_rows};
@@ -81,7 +82,7 @@ impl Levels {
         Ok(levels)
     }
 
-    /// Those of which the device holds tiles that rays asked for, in at most so many bytes.
+    /// Those of which the device holds tiles that rays asked for, in at most so many bytes; `file` has all of a map that is not held.
     ///
     /// # Errors
     /// As [`Tiles::new`].
@@ -90,8 +91,9 @@ impl Levels {
         label: &str,
         map: &Arc<HeightMap>,
         pool: (Interpolation, u64),
+        file: Option<&Arc<TileFile>>,
     ) -> Result<Self, Error> {
-        let tiles = Tiles::new(device, label, map, pool)?;
+        let tiles = Tiles::new(device, label, map, pool, file)?;
         let is_float = matches!(map.samples(), Samples::Float(_));
         let shape = Shape::new(map.width(), map.height());
         Ok(Levels { view: tiles.view.clone(), shape, is_float, tiles: Some(tiles) })

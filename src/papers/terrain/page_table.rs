@@ -59,8 +59,7 @@ pub struct Load {
 #[derive(Debug, Clone)]
 pub struct PageTable {
     grids: Vec<Grid>,
-    /// Levels above the data.
-    top: u32,
+    shape: Shape,
     column_bits: u32,
     /// Of each tile the place that holds it.
     places: Vec<Option<usize>>,
@@ -104,7 +103,7 @@ impl PageTable {
         let places = rows << column_bits;
         PageTable {
             grids,
-            top: shape.top,
+            shape,
             column_bits,
             places: vec![None; count],
             tiles: vec![None; places],
@@ -112,6 +111,11 @@ impl PageTable {
             exchanges: 0,
             missing: 0,
         }
+    }
+
+    /// Sizes of the levels.
+    pub fn shape(&self) -> Shape {
+        self.shape
     }
 
     /// Columns and rows of the pool, in tiles.
@@ -151,6 +155,12 @@ impl PageTable {
         let Grid { bound, shift, first, columns, .. } = self.grids[after - 1];
         let index = (number - first) as u32;
         Tile { bound, shift, origin: (index % columns * TILE, index / columns * TILE) }
+    }
+
+    /// The number of the tile of a level at a column and row of tiles; none of a level that there is not.
+    pub fn number(&self, bound: Bound, shift: u32, (x, y): (u32, u32)) -> Option<usize> {
+        let grid = self.grids.iter().find(|grid| grid.bound == bound && grid.shift == shift)?;
+        (x < grid.columns && y < grid.rows).then(|| grid.first + y as usize * grid.columns as usize + x as usize)
     }
 
     /// Gives places to the tiles that are asked for, whose numbers rise, as many as the pool has, the coarsest first. Those that
@@ -220,7 +230,7 @@ impl PageTable {
 
     /// The binary logarithm of the tiles a side of the data of such a map.
     fn page_bits(&self) -> u32 {
-        self.top.saturating_sub(TILE_BITS)
+        self.shape.top.saturating_sub(TILE_BITS)
     }
 
     /// The first page of a level: the finer ones come before it.
@@ -233,7 +243,7 @@ impl PageTable {
 
     /// Pages of the highest values, or of the lowest, of all levels.
     fn bound_pages(&self) -> usize {
-        self.first_page(self.top) + 1
+        self.first_page(self.shape.top) + 1
     }
 }
 
@@ -324,6 +334,19 @@ mod tests {
         // No two tiles have one place, and both lists agree.
         for (place, tile) in table.tiles.iter().enumerate() {
             assert_eq!(tile.and_then(|tile| table.places[tile]), Some(place));
+        }
+    }
+
+    #[test]
+    fn numbers_and_tiles_are_each_others_inverse() {
+        for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+            let table = PageTable::new(SHAPE, interpolation, 1);
+            for number in 0..table.count() {
+                let Tile { bound, shift, origin: (x, y) } = table.tile(number);
+                assert_eq!(table.number(bound, shift, (x / TILE, y / TILE)), Some(number));
+            }
+            assert_eq!(table.number(Bound::Lowest, 0, (0, 0)), None);
+            assert_eq!(table.number(Bound::Highest, 0, (6, 0)), None);
         }
     }
 

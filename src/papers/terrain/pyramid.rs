@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::parameters::Interpolation;
-use crate::scene::{HeightMap, Samples};
+use crate::scene::{HeightMap, Rows, Samples};
 
 /// Sizes of the levels of a map. The paper counts levels from the coarsest, 0, to the data, n; a shift counts from the data,
 /// 0, to the single texel, `top`.
@@ -89,6 +89,9 @@ pub trait Texel: bytemuck::Pod + PartialOrd + Send + Sync {
 
     /// The samples of a map that holds this kind; none of another's.
     fn samples_of(map: &HeightMap) -> &[Self];
+
+    /// Rows of this kind; none of another's.
+    fn rows_of(rows: Rows<'_>) -> &[Self];
 }
 
 impl Texel for u16 {
@@ -99,6 +102,10 @@ impl Texel for u16 {
     fn samples_of(map: &HeightMap) -> &[Self] {
         if let Samples::Steps { values, .. } = map.samples() { values } else { &[] }
     }
+
+    fn rows_of(rows: Rows<'_>) -> &[Self] {
+        if let Rows::Steps(values) = rows { values } else { &[] }
+    }
 }
 
 impl Texel for f32 {
@@ -108,6 +115,10 @@ impl Texel for f32 {
 
     fn samples_of(map: &HeightMap) -> &[Self] {
         if let Samples::Float(values) = map.samples() { values } else { &[] }
+    }
+
+    fn rows_of(rows: Rows<'_>) -> &[Self] {
+        if let Rows::Float(values) = rows { values } else { &[] }
     }
 }
 
@@ -145,43 +156,80 @@ impl<T: Texel> Pyramid<T> {
     }
 }
 
-impl Bound {
-    fn choose<T: Texel>(self, a: T, b: T) -> T {
-        if (a < b) == (self == Bound::Lowest) { a } else { b }
+/// Columns and rows of a level and of the next coarser one.
+pub type Sizes = ((u32, u32), (u32, u32));
+
+fn higher<T: Texel>(a: T, b: T) -> T {
+    if a < b { b } else { a }
+}
+
+fn lower<T: Texel>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
+/// The next coarser level, of texels that cover so many of the finer ones before and after their four as well.
+fn coarsen_more<T: Texel>(finer: &[T], sizes: Sizes, bound: Bound, more: [u32; 2]) -> Vec<T> {
+    match bound {
+        Bound::Highest => choose_more(finer, sizes, more, higher),
+        Bound::Lowest => choose_more(finer, sizes, more, lower),
     }
 }
 
-/// Columns and rows of a level and of the next coarser one.
-type Sizes = ((u32, u32), (u32, u32));
-
-/// The next coarser level, of texels that cover so many of the finer ones before and after their four as well.
-fn coarsen_more<T: Texel>(finer: &[T], sizes: Sizes, bound: Bound, [before, after]: [u32; 2]) -> Vec<T> {
-    let ((columns, rows), (width, height)) = sizes;
-    let covered = |at: u32, count: u32| (2 * at).saturating_sub(before)..(2 * at + 2 + after).min(count);
-    let coarse_row = |row: u32| {
-        (0..width).map(move |column| {
-            let first = finer[2 * row as usize * columns as usize + 2 * column as usize];
-            covered(row, rows).fold(first, |chosen, row| {
-                let texels = &finer[row as usize * columns as usize..][..columns as usize];
-                covered(column, columns).fold(chosen, |chosen, column| bound.choose(chosen, texels[column as usize]))
-            })
-        })
+/// Columns first, then along the row: whole rows of texels are compared at once.
+fn choose_more<T: Texel>(
+    finer: &[T],
+    ((columns, rows), (width, height)): Sizes,
+    [before, after]: [u32; 2],
+    choose: impl Fn(T, T) -> T + Sync,
+) -> Vec<T> {
+    let covered = |at: usize, count: u32| {
+        let first = (2 * at).saturating_sub(before as usize);
+        first..(2 * at + 2 + after as usize).min(count as usize)
     };
-    (0..height).into_par_iter().flat_map_iter(coarse_row).collect()
+    let mut level = bytemuck::allocation::zeroed_vec::<T>(width as usize * height as usize);
+    level.par_chunks_mut(width as usize).enumerate().for_each_init(Vec::new, |line, (row, coarse)| {
+        let mut texels = covered(row, rows).map(|row| &finer[row * columns as usize..][..columns as usize]);
+        line.clear();
+        line.extend_from_slice(texels.next().unwrap_or_default());
+        for texels in texels {
+            line.iter_mut().zip(texels).for_each(|(chosen, &texel)| *chosen = choose(*chosen, texel));
+        }
+        for (column, texel) in coarse.iter_mut().enumerate() {
+            let texels = &line[covered(column, columns)];
+            *texel = texels.iter().skip(1).fold(texels[0], |chosen, &texel| choose(chosen, texel));
+        }
+    });
+    level
 }
 
-fn coarsen<T: Texel>(finer: &[T], ((columns, rows), (width, height)): Sizes, bound: Bound) -> Vec<T> {
-    let choose = |a: T, b: T| bound.choose(a, b);
-    let row_of = |row: u32| &finer[row.min(rows - 1) as usize * columns as usize..][..columns as usize];
-    let coarse_row = |row: u32| {
-        let (north, south) = (row_of(2 * row), row_of(2 * row + 1));
-        (0..width).map(move |column| {
-            let west = (2 * column) as usize;
-            let east = (west + 1).min(columns as usize - 1);
-            choose(choose(north[west], north[east]), choose(south[west], south[east]))
-        })
-    };
-    (0..height).into_par_iter().flat_map_iter(coarse_row).collect()
+/// The next coarser level, each texel chosen among its four finer ones.
+pub fn coarsen<T: Texel>(finer: &[T], sizes: Sizes, bound: Bound) -> Vec<T> {
+    match bound {
+        Bound::Highest => choose_of_four(finer, sizes, higher),
+        Bound::Lowest => choose_of_four(finer, sizes, lower),
+    }
+}
+
+fn choose_of_four<T: Texel>(
+    finer: &[T],
+    ((columns, _), (width, height)): Sizes,
+    choose: impl Fn(T, T) -> T + Sync,
+) -> Vec<T> {
+    let columns = columns as usize;
+    let mut level = bytemuck::allocation::zeroed_vec::<T>(width as usize * height as usize);
+    level.par_chunks_mut(width as usize).zip(finer.par_chunks(2 * columns)).for_each(|(coarse, pair)| {
+        let (north, south) = pair.split_at(columns);
+        // Of an odd number the last row is alone.
+        let south = if south.is_empty() { north } else { south };
+        let (north, south) = (north.as_chunks::<2>(), south.as_chunks::<2>());
+        for (texel, (north, south)) in coarse.iter_mut().zip(north.0.iter().zip(south.0)) {
+            *texel = choose(choose(north[0], north[1]), choose(south[0], south[1]));
+        }
+        if let (&[north], &[south], [.., texel]) = (north.1, south.1, coarse) {
+            *texel = choose(north, south);
+        }
+    });
+    level
 }
 
 #[cfg(test)]

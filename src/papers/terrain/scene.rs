@@ -11,12 +11,14 @@ use super::geometric_transformation::SceneView;
 use super::ground::{Ground, Origin};
 use super::hit::NO_DEPTH;
 use super::levels::Levels;
-use super::parameters::{Interpolation, Parameters};
+use super::parameters::{Interpolation, Parameters, Variant};
 use super::placement::{Extent, Placement, Rays};
 use super::pyramid::Bound;
 use super::stage::Traversal;
+use super::tile_file::TileFile;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
+use crate::measure::Variant as _;
 use crate::scene::{HeightMap, Mesh, Samples};
 
 /// A height map and its place.
@@ -37,6 +39,8 @@ pub struct Inputs<'a> {
     pub objects: &'a [Mesh],
     /// A picture over the first map, or what is drawn of the land itself.
     pub drape: Option<&'a Drape>,
+    /// Of each map, in their order, where the maps have no samples of their own; else none. For [`Variant::TiledCompute`] alone.
+    pub tiles: &'a [Arc<TileFile>],
 }
 
 impl Inputs<'_> {
@@ -58,6 +62,8 @@ pub struct Scene {
     pub base_level_m: f64,
     /// The drape over the land, if there is one.
     pub draping: Option<Draping>,
+    /// Of each map where none is held.
+    pub tiles: Vec<Arc<TileFile>>,
 }
 
 impl Scene {
@@ -73,16 +79,34 @@ impl Scene {
         let grounds: Vec<Ground> = placed.iter().map(ground).collect();
         let start = Extent::of(std::iter::empty());
         let closed = |(input, ground): (&MapInput, &Ground)| {
-            if ground.closes { Arc::new(input.map.closed()) } else { input.map.clone() }
+            if ground.closes && inputs.tiles.is_empty() { Arc::new(input.map.closed()) } else { input.map.clone() }
         };
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
             base_level_m,
             draping: inputs.drape.map(Drape::draping),
+            tiles: inputs.tiles.to_vec(),
             maps: placed.iter().zip(&grounds).map(closed).collect(),
             grounds,
         }
+    }
+
+    /// Refuses what needs the samples of maps that are not held.
+    ///
+    /// # Errors
+    /// [`Error::Filling`].
+    pub fn check_tiles(&self, label: &str, variant: Variant) -> Result<(), Error> {
+        let reason = if self.tiles.is_empty() {
+            return Ok(());
+        } else if variant != Variant::TiledCompute {
+            format!("variant {} holds whole maps: take tiled-compute, or leave `stream` out", variant.as_str())
+        } else if self.grounds.iter().any(|ground| ground.closes) {
+            "a map that goes once round the base is held whole: leave `stream` out".to_owned()
+        } else {
+            return Ok(());
+        };
+        Err(Error::Filling { object: format!("{label}/maps"), reason })
     }
 
     /// Every map as `rays` see it.
@@ -131,7 +155,7 @@ impl DeviceScene {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        maps: &[Arc<HeightMap>],
+        Scene { maps, tiles, .. }: &Scene,
         (drape, traversal): (Option<&Drape>, Traversal),
     ) -> Result<Self, Error> {
         let cover = traversal.cover(parameters.interpolation);
@@ -145,7 +169,7 @@ impl DeviceScene {
             let name = format!("{label}/map-{index}");
             Ok(Map {
                 levels: match traversal {
-                    Traversal::Tiles => Levels::in_tiles(device, &name, map, pool)?,
+                    Traversal::Tiles => Levels::in_tiles(device, &name, map, pool, tiles.get(index))?,
                     Traversal::Halving | Traversal::Cells => Levels::new(shaders, &name, map, bounds, cover)?,
                 },
                 terrain: block_buffer::<TerrainBlock>(device, &format!("{name}/land"))?,

@@ -1,14 +1,13 @@
 //! A user's configuration of the `terrain` paper: its declaration, its scene, its measured runs.
 
-use std::ffi::OsStr;
 use std::sync::Arc;
 
 use glam::DVec2;
 use serde_json::{Map, Value as Json, json};
 
-use super::axes;
 use super::experiments::figures::fractions;
 use super::experiments::{self, Options, figures};
+use super::{axes, streaming};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::bench::Built;
@@ -17,14 +16,14 @@ use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Shape, Value, one, parse_finite};
+use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
 use crate::measure::stress::{Axis, host_memory};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
     Collider, Drape, DrapeSource, Draping, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement,
-    Terrain, TileCounts, Variant, View, WRITTEN,
+    Terrain, TileCounts, TileFile, Variant, View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
@@ -49,6 +48,8 @@ pub struct Setup {
     pub drape: Option<DrapeSource>,
     /// Heights for the samples that maps leave void.
     pub voids: Voids,
+    /// Maps are not held: their tiles are read from files that are made once.
+    pub streams: bool,
     /// Samples a side of the synthetic volcano.
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
@@ -72,41 +73,12 @@ impl Default for Setup {
             crease_deg: CREASE_DEG,
             drape: None,
             voids: Voids::Fill,
+            streams: false,
             resolution: HeightMapSource::VOLCANO_SIDE,
             spacing_m: None,
             exaggeration: 1.0,
             seed: 1,
             preset: None,
-        }
-    }
-}
-
-impl Value for Voids {
-    const SHAPE: Shape = Shape::single("fill|level:M|hole");
-
-    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
-        match one(texts)? {
-            "fill" => Ok(Voids::Fill),
-            "hole" => Ok(Voids::Hole),
-            text => match text.split_once(':') {
-                Some(("level", metres)) => parse_finite(metres).map(Voids::Level),
-                _ => Err("give fill, level:M or hole".to_owned()),
-            },
-        }
-    }
-
-    fn text(&self) -> String {
-        match self {
-            Voids::Fill => "fill".to_owned(),
-            Voids::Level(level_m) => format!("level:{level_m}"),
-            Voids::Hole => "hole".to_owned(),
-        }
-    }
-
-    fn json(&self) -> Json {
-        match self {
-            Voids::Fill | Voids::Hole => json!(self.text()),
-            Voids::Level(level_m) => json!({"level": level_m}),
         }
     }
 }
@@ -126,6 +98,15 @@ pub struct Scene {
     pub objects: Vec<Mesh>,
     /// The drape over the land, loaded.
     pub drape: Option<Drape>,
+    /// Of each map where none is held.
+    pub tiles: Vec<Arc<TileFile>>,
+}
+
+impl Scene {
+    fn inputs(&self) -> Inputs<'_> {
+        let Scene { maps, objects, drape, tiles } = self;
+        Inputs { maps, objects, drape: drape.as_ref(), tiles }
+    }
 }
 
 impl Setup {
@@ -143,7 +124,7 @@ impl Setup {
     }
 
     /// The place of each map.
-    fn placements(&self) -> impl Iterator<Item = Placement> {
+    pub(super) fn placements(&self) -> impl Iterator<Item = Placement> {
         let place = |[east, south, degrees]: [f32; 3]| Placement {
             center_m: DVec2::new(east.into(), south.into()),
             yaw_rad: f64::from(degrees).to_radians(),
@@ -227,6 +208,9 @@ impl Study for Setup {
     /// Checks the parameters and loads the maps, the objects and the drape.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
+        if self.streams {
+            return streaming::load(self);
+        }
         let mut maps = self.maps.iter().map(|source| self.load_map(source)).collect::<Result<Vec<_>, _>>()?;
         if self.voids == Voids::Hole {
             let lowest_m = maps.iter().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
@@ -235,8 +219,8 @@ impl Study for Setup {
         }
         let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
         let drape = self.drape.as_ref().map(|source| source.load(&maps, self.exaggeration)).transpose()?;
-        let mut scene =
-            Scene { maps: maps.into_iter().zip(self.placements()).map(input).collect(), objects: Vec::new(), drape };
+        let maps = maps.into_iter().zip(self.placements()).map(input).collect();
+        let mut scene = Scene { maps, objects: Vec::new(), drape, tiles: Vec::new() };
         scene.objects = self.stand(&scene.maps)?;
         Ok(scene)
     }
@@ -257,12 +241,12 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Terrain, gpu::Error> {
-        let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
+        let inputs = scene.inputs();
         Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
     }
 
     fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
-        let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
+        let inputs = scene.inputs();
         let map = if self.maps.contains(&HeightMapSource::Volcano) { "resolution" } else { "map" };
         self.parameters.estimate(variant, &inputs, map)
     }
@@ -384,6 +368,12 @@ impl Study for Setup {
                 .help(
                     "Samples without a height: fill, from their neighbours; level:M, at M metres; hole, no terrain, so that the \
                      base is seen",
+                )
+                .cost(Cost::Buffers),
+            Parameter::new("stream", field!(Setup.streams))
+                .help(
+                    "Hold no map: read tiles from a file of them, made once in the cache of the user's folder; for variant \
+                     tiled-compute",
                 )
                 .cost(Cost::Buffers),
             Parameter::new("seed", field!(Setup.seed))

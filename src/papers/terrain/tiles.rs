@@ -1,4 +1,4 @@
-//! The levels of a map in tiles: all on the processor, on the device a pool of those that rays asked for.
+//! The levels of a map in tiles: all in memory or in a file, on the device a pool of those that rays asked for.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,6 +9,7 @@ use super::height_field::{Field, FieldWork, HeightField};
 use super::page_table::{PageTable, TILE, Tile};
 use super::parameters::Interpolation;
 use super::pyramid::{Cover, Shape, Texel};
+use super::tile_file::{TileFile, tile_bytes};
 use crate::gpu::bindings::Resource;
 use crate::gpu::transfer::{read_buffer, update, upload, upload_rectangle};
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location};
@@ -49,6 +50,12 @@ impl TileCounts {
     }
 }
 
+/// All tiles of a map's levels.
+enum Source {
+    Memory(HeightField),
+    File(Arc<TileFile>),
+}
+
 /// A map's levels of which the device holds a pool of tiles.
 pub struct Tiles {
     /// The pool.
@@ -57,7 +64,7 @@ pub struct Tiles {
     /// A number for each page, 1 where a drawing that marks has read it.
     asked: Arc<Buffer>,
     staging: Arc<Buffer>,
-    field: HeightField,
+    source: Source,
     table: PageTable,
     loaded: u64,
     exchanges: u32,
@@ -67,7 +74,8 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// Builds the levels on the processor and makes a pool of at most `bytes`, or one for the coarsest levels and little more.
+    /// Makes a pool of at most `bytes`, or one for the coarsest levels and little more; without a file builds the levels on the
+    /// processor.
     ///
     /// # Errors
     /// [`Error::Limit`] for a pool that is larger than the device's images; errors of the Vulkan layer.
@@ -76,12 +84,13 @@ impl Tiles {
         label: &str,
         map: &Arc<HeightMap>,
         (interpolation, bytes): (Interpolation, u64),
+        file: Option<&Arc<TileFile>>,
     ) -> Result<Self, Error> {
-        let (format, texel_bytes) = match map.samples() {
-            Samples::Steps { .. } => (vk::Format::R16_UINT, 2),
-            Samples::Float(_) => (vk::Format::R32_UINT, 4),
+        let format = match map.samples() {
+            Samples::Steps { .. } => vk::Format::R16_UINT,
+            Samples::Float(_) => vk::Format::R32_UINT,
         };
-        let tile_bytes = u64::from(TILE * TILE) * texel_bytes;
+        let tile_bytes = tile_bytes(map) as u64;
         let shape = Shape::new(map.width(), map.height());
         let table = PageTable::new(shape, interpolation, (bytes / tile_bytes) as usize);
         let (columns, rows) = table.pool();
@@ -98,7 +107,10 @@ impl Tiles {
             pages: buffer("pages", &pages)?,
             asked: buffer("asked", &vec![0; pages.len()])?,
             staging: Buffer::new(device, desc)?,
-            field: HeightField::new(map, interpolation, Cover::Nodes),
+            source: match file {
+                Some(file) => Source::File(file.clone()),
+                None => Source::Memory(HeightField::new(map, interpolation, Cover::Nodes)),
+            },
             table,
             loaded: 0,
             exchanges: 0,
@@ -142,7 +154,13 @@ impl Tiles {
     fn bring(&mut self, asked: &[usize]) -> Result<usize, Error> {
         let loads = self.table.exchange(asked.iter().copied());
         for load in &loads {
-            let texels = self.field.with(Texels(self.table.tile(load.tile)));
+            let texels = match &self.source {
+                Source::Memory(field) => field.with(Texels(self.table.tile(load.tile))),
+                Source::File(file) => file.read(load.tile).map_err(|reason| {
+                    let object = self.view.image().name().to_owned();
+                    Error::Filling { object, reason }
+                })?,
+            };
             self.staging.write(0, &texels)?;
             upload_rectangle(&self.staging, &self.view, self.table.origin(load.place), (TILE, TILE))?;
         }
@@ -167,7 +185,7 @@ impl Tiles {
 }
 
 /// The texels of a tile as bytes, row by row; those beyond the level are zero.
-struct Texels(Tile);
+pub struct Texels(pub Tile);
 
 impl FieldWork for Texels {
     type Output = Vec<u8>;

@@ -1,3 +1,6 @@
+mod record;
+
+use super::slope::SlopeMeter;
 use super::void_samples::{Suspect, VoidSamples, Voids};
 use super::{Coordinates, Geographic};
 use crate::scene::Error;
@@ -18,6 +21,8 @@ pub struct HeightMap {
     coordinates: Option<Coordinates>,
     voids: Option<VoidSamples>,
     suspect: Option<Suspect>,
+    /// Of a map whose samples lie elsewhere.
+    slope: Option<f64>,
 }
 
 /// The heights of a map, row by row.
@@ -39,7 +44,7 @@ impl HeightMap {
     /// A side outside [`Self::SIDE`], a number of samples other than `width` times `height`, a height that is not
     /// finite, or steps that are not finite and positive.
     pub fn new(width: u32, height: u32, samples: Samples) -> Result<Self, Error> {
-        check_size(width.into(), height.into()).map_err(unusable)?;
+        let map = Self::promised(width, height, samples.kind())?;
         let (count, expected) = (samples.len(), width as usize * height as usize);
         if count != expected {
             return Err(unusable(format!("{count} samples for {width} x {height}, which needs {expected}")));
@@ -51,17 +56,39 @@ impl HeightMap {
                 unusable(format!("row {row}, column {column}: the height is not a finite number"))
             }
         })?;
+        Ok(Self { samples, range_m, ..map })
+    }
+
+    /// What a map says of itself but its range and its slope; its samples, of which `kind` has none, lie elsewhere.
+    ///
+    /// # Errors
+    /// A side outside [`Self::SIDE`].
+    pub(super) fn promised(width: u32, height: u32, kind: Samples) -> Result<Self, Error> {
+        check_size(width.into(), height.into()).map_err(unusable)?;
         Ok(Self {
             width,
             height,
-            samples,
-            range_m,
+            samples: kind,
+            range_m: (0.0, 0.0),
             spacing_m: DVec2::ONE,
             geographic: None,
             coordinates: None,
             voids: None,
             suspect: None,
+            slope: None,
         })
+    }
+
+    /// The map without its samples, which lie elsewhere; all else that it says of itself stays.
+    ///
+    /// # Errors
+    /// Heights that are not finite.
+    pub(super) fn without_samples(self, range_m: (f32, f32), slope: f64) -> Result<Self, Error> {
+        if !(range_m.0.is_finite() && range_m.1.is_finite()) {
+            return Err(unusable("its heights are out of range"));
+        }
+        let voids = self.voids.as_ref().map(VoidSamples::counted);
+        Ok(Self { samples: self.samples.kind(), range_m, slope: Some(slope), voids, ..self })
     }
 
     /// Columns.
@@ -90,6 +117,17 @@ impl HeightMap {
     /// Lowest and highest sample, metres.
     pub fn range_m(&self) -> (f32, f32) {
         self.range_m
+    }
+
+    /// Root of the mean square of the land's slope, metres for a metre; of at most 512 columns and rows.
+    pub fn slope(&self) -> f64 {
+        self.slope.unwrap_or_else(|| {
+            let mut meter = SlopeMeter::new((self.width, self.height), self.spacing_m);
+            for row in (0..self.height).filter(|row| meter.takes(*row)).collect::<Vec<_>>() {
+                meter.take(&|column| self.height_m(column, row), &|column| self.height_m(column, row + 1));
+            }
+            meter.slope()
+        })
     }
 
     /// Metres between neighbouring columns (x) and rows (y), both positive.
@@ -249,6 +287,14 @@ impl Samples {
 
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The same kind without a sample.
+    fn kind(&self) -> Self {
+        match *self {
+            Self::Steps { origin_m, step_m, .. } => Self::Steps { values: Vec::new(), origin_m, step_m },
+            Self::Float(_) => Self::Float(Vec::new()),
+        }
     }
 
     /// Lowest and highest height of at least one sample.

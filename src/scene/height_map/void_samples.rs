@@ -82,6 +82,15 @@ impl VoidSamples {
         VoidSamples { count: places.len() as u64, mask: mask.into(), treatment: Voids::Fill }
     }
 
+    /// So many in places that are not known.
+    pub(super) fn anywhere(count: u64, treatment: Voids) -> Self {
+        VoidSamples { count, mask: Arc::new([]), treatment }
+    }
+
+    pub(super) fn treatment(&self) -> Voids {
+        self.treatment
+    }
+
     pub(super) fn count(&self) -> u64 {
         self.count
     }

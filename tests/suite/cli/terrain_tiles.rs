@@ -83,3 +83,69 @@ fn a_flight_counts_its_stalls() {
     assert!(rows.iter().filter(|row| row[3] > 0.0).count() >= 2, "{rows:?}");
     small("experiment flight --counts 3").run().refused(2, &["--counts", "this experiment has none"]);
 }
+
+/// Nothing of the map is held, and the picture is that of the whole one; the file of tiles is made once, made anew where it is
+/// damaged, and told of where a tile in it is.
+#[test]
+fn streamed_maps_come_from_a_file_that_is_made_once() {
+    let out = folder();
+    let kept = || {
+        let folder = out.path().join("fumarole/tiles");
+        if folder.exists() { entries(&folder) } else { Vec::new() }
+    };
+    let render = |options: &str| {
+        let render = format!("render --quiet --lod exact --camera top {options}");
+        small(&render).inside(out.path()).env("XDG_CACHE_HOME", out.path()).run()
+    };
+    let read = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+    let streamed = "--resolution 1025 --stream --variant tiled-compute --tile-memory 8 --image streamed.png";
+    render("--resolution 1025 --variant gpu-compute --image whole.png").succeeded();
+    render(&format!("{streamed} --no-cache")).succeeded();
+    assert!(read("whole.png") == read("streamed.png") && kept().is_empty());
+    for damage in ["", "head", "end"] {
+        let path = kept().first().map(|name| out.path().join("fumarole/tiles").join(name));
+        match (damage, path) {
+            ("head", Some(path)) => {
+                let mut bytes = std::fs::read(&path).unwrap();
+                bytes[50] ^= 1;
+                std::fs::write(&path, bytes).unwrap();
+            }
+            ("end", Some(path)) => {
+                let bytes = std::fs::metadata(&path).unwrap().len();
+                std::fs::File::options().write(true).open(&path).unwrap().set_len(bytes / 2).unwrap();
+            }
+            _ => {}
+        }
+        std::fs::remove_file(out.path().join("streamed.png")).unwrap();
+        render(streamed).succeeded();
+        assert!(read("whole.png") == read("streamed.png"), "{damage}");
+        let kept = kept();
+        assert!(kept.len() == 1 && kept[0].ends_with(".tiles"), "{damage}: {kept:?}");
+    }
+    // The head is sound, and a tile is not: no picture, one line, and the next run makes the file anew.
+    let path = out.path().join("fumarole/tiles").join(&kept()[0]);
+    let mut bytes = std::fs::read(&path).unwrap();
+    // The data are the last three quarters.
+    let middle = bytes.len() / 2;
+    bytes[middle..].fill(9);
+    std::fs::write(&path, bytes).unwrap();
+    render(streamed).refused(2, &["filling", "tile ", "its checksum is another", "start again"]);
+    assert!(kept().is_empty());
+    render(streamed).succeeded();
+    assert!(read("whole.png") == read("streamed.png"));
+    // Another exaggeration is another map.
+    render(&format!("{streamed} --exaggeration 2")).succeeded();
+    assert_eq!(kept().len(), 2);
+}
+
+/// What needs the samples themselves is refused.
+#[test]
+fn what_needs_samples_is_not_streamed() {
+    let render =
+        |options: &str| small(&format!("render --quiet --resolution 65 --stream {options} --image x.png")).run();
+    render("--variant gpu-compute").refused(2, &["variant gpu-compute holds whole maps", "tiled-compute", "--stream"]);
+    render("--variant cpu").refused(2, &["variant cpu holds whole maps"]);
+    render("--variant tiled-compute --object teapot@0,0,0,100").refused(2, &["--object", "--stream"]);
+    render("--variant tiled-compute --voids hole").refused(2, &["--voids", "--base-level"]);
+    small("collide --segment 0,3000,0,2000,0,500 --stream").run().refused(2, &["--stream"]);
+}

@@ -125,7 +125,8 @@ fn far_objects_and_land_hide_each_other() {
                     ..Parameters::default()
                 };
                 let [with, without] = [&objects[..], &[]].map(|objects| {
-                    Drawing::with(device, variant, &parameters, &Inputs { maps: &maps, objects, drape: None }).picture
+                    Drawing::with(device, variant, &parameters, &Inputs { maps: &maps, objects, ..Inputs::default() })
+                        .picture
                 });
                 let pixels = [&with, &without].map(|picture| picture.pixels().as_chunks::<4>().0);
                 let mut seen = [0, 0];

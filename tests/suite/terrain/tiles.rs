@@ -1,13 +1,16 @@
 //! Maps of which the device holds some tiles: settled pictures are those of the whole map, and what has no room is drawn from the
 //! level above and counted.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Paper;
-use fumarole::papers::terrain::{Base, Hit, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
+use fumarole::papers::terrain::{
+    Base, Hit, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, TileFile, Variant, View,
+};
 use fumarole::scene::random::Random;
-use fumarole::scene::{Camera, Samples};
+use fumarole::scene::{Camera, RowSource, Samples};
 use glam::Vec3;
 
 use super::drawing::{Drawing, Painter, differing};
@@ -96,6 +99,40 @@ fn tiles_of_every_kind_show_the_whole_map() {
                     assert!(expected.hits.iter().filter(|hit| hit.surface == Surface::Terrain).count() > 1000);
                 }
             }
+        }
+    });
+}
+
+/// Maps of which nothing is held, their tiles in files: every picture is that of the whole maps, bit for bit, and nothing but tiles
+/// can show them.
+#[test]
+fn tiles_from_files_show_the_whole_map() {
+    gpu_test(|device| {
+        let rough = ridges(&mut Random::new(9), (700, 391), 4000.0);
+        let eye = camera(Vec3::new(-9000.0, 9000.0, 21_000.0), Vec3::new(0.0, 1000.0, 0.0));
+        for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+            let mut maps = alone(rough.clone());
+            maps.extend(alone(volcano(300)));
+            maps[1].placement.center_m.x = 25_000.0;
+            let file = |input: &MapInput| {
+                let key = || Ok("key".to_owned());
+                let tiles = TileFile::open(None, Path::new("map"), interpolation, &key, || {
+                    Ok(RowSource::of(input.map.as_ref().clone())?)
+                });
+                Arc::new(tiles.unwrap())
+            };
+            let tiles: Vec<Arc<TileFile>> = maps.iter().map(file).collect();
+            let bare =
+                |(input, tiles): (&MapInput, &Arc<TileFile>)| MapInput { map: tiles.map().clone(), ..input.clone() };
+            let bare: Vec<MapInput> = maps.iter().zip(&tiles).map(bare).collect();
+            assert!(bare.iter().all(|input| input.map.samples().is_empty()));
+            let parameters = Parameters { interpolation, ..parameters(Lod::Pixel, 8) };
+            let expected = painter(device, Variant::GpuCompute, &parameters, &maps).from(eye);
+            let inputs = Inputs { maps: &bare, tiles: &tiles, ..Inputs::default() };
+            let drawing =
+                Painter::new(device, Compiler::Glslang, Variant::TiledCompute, &parameters, &inputs).from(eye);
+            assert_same(&format!("{interpolation:?}"), &expected, &drawing);
+            assert!(expected.hits.iter().filter(|hit| hit.surface == Surface::Terrain).count() > 1000);
         }
     });
 }

@@ -190,6 +190,7 @@ pub fn verbs() -> Vec<Experiment<Setup>> {
             ("haze", NO_PICTURE),
             ("camera", NO_PICTURE),
             ("size", NO_PICTURE),
+            ("stream", "a collision needs the samples in memory"),
         ],
         run: collisions,
     }]

@@ -33,6 +33,31 @@ pub fn volcano(side: u32, seed: u64) -> Result<HeightMap, Error> {
     HeightMap::new(side, side, Terrain::of(seed).steps(side as usize))?.with_spacing_m(DVec2::splat(spacing_m))
 }
 
+/// The rows of [`volcano()`] of a side and a seed, made when they are asked for.
+pub(super) struct VolcanoRows {
+    terrain: Arc<Terrain>,
+    side: u32,
+}
+
+impl VolcanoRows {
+    pub(super) fn new(side: u32, seed: u64) -> Self {
+        VolcanoRows { terrain: Terrain::of(seed), side }
+    }
+
+    /// All but the samples.
+    pub(super) fn map(&self) -> Result<HeightMap, Error> {
+        let (origin_m, step_m) = self.terrain.scale();
+        let spacing_m = f64::from(EXTENT_M) / f64::from(self.side - 1);
+        let kind = Samples::Steps { values: Vec::new(), origin_m, step_m };
+        HeightMap::promised(self.side, self.side, kind)?.with_spacing_m(DVec2::splat(spacing_m))
+    }
+
+    /// Whole rows from one on.
+    pub(super) fn fill(&self, first_row: u32, values: &mut [u16]) {
+        self.terrain.rows(self.side as usize, first_row as usize, values);
+    }
+}
+
 /// The terrain: a uniform cubic B-spline surface, so smooth that its slope has no kink.
 struct Terrain {
     /// CONTROLS x CONTROLS heights in metres, from the north-west.
@@ -86,13 +111,25 @@ impl Terrain {
 
     /// The surface at `side` x `side` places, at least two a side.
     fn steps(&self, side: usize) -> Samples {
-        let (low_m, high_m) = self.range_m();
-        let step_m = (high_m - low_m) / f32::from(u16::MAX);
         let mut values = vec![0; side * side];
+        self.rows(side, 0, &mut values);
+        let (origin_m, step_m) = self.scale();
+        Samples::Steps { values, origin_m, step_m }
+    }
+
+    /// Height of step 0 and between steps, metres.
+    fn scale(&self) -> (f32, f32) {
+        let (low_m, high_m) = self.range_m();
+        (low_m, (high_m - low_m) / f32::from(u16::MAX))
+    }
+
+    /// Some rows of [`Self::steps`], from `first_row` on.
+    fn rows(&self, side: usize, first_row: usize, values: &mut [u16]) {
+        let (low_m, step_m) = self.scale();
         values.par_chunks_mut(side).enumerate().for_each_init(
             || vec![0.0_f32; CONTROLS],
             |line, (row, values)| {
-                let (first, weights) = taps(row, side);
+                let (first, weights) = taps(first_row + row, side);
                 for (column, height) in line.iter_mut().enumerate() {
                     *height = (0..4).map(|tap| weights[tap] * self.controls_m[(first + tap) * CONTROLS + column]).sum();
                 }
@@ -103,7 +140,6 @@ impl Terrain {
                 }
             },
         );
-        Samples::Steps { values, origin_m: low_m, step_m }
     }
 }
 

@@ -1,0 +1,83 @@
+//! Scenes whose maps are not held: their tiles are read from files that are made once.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::setup::{Scene, Setup};
+use super::tile_file::TileFile;
+use super::{DrapeSource, MapInput};
+use crate::content;
+use crate::measure::Error;
+use crate::measure::parameter::Value;
+use crate::scene::loading::Conditions;
+use crate::scene::{HeightMap, HeightMapSource, RowSource, Voids, source_sha256};
+
+/// Loads all but the samples of the maps.
+///
+/// # Errors
+/// [`Error::Input`] for what needs them; as [`TileFile::open`], and of the drape and the objects.
+pub fn load(setup: &Setup) -> Result<Scene, Error> {
+    if setup.objects.iter().any(|object| object.place.is_some()) {
+        let reason =
+            "an `object` with a place stands on the ground, which is not held; leave the place or `stream` out";
+        return Err(Error::Input(reason.into()));
+    }
+    if setup.voids == Voids::Hole && setup.parameters.base_level_m.is_none() {
+        let reason = "`voids` hole: with `stream` holes lie below `base-level`, which has to be given";
+        return Err(Error::Input(reason.into()));
+    }
+    let tiles = setup.maps.iter().map(|source| open(setup, source).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
+    let bare: Vec<HeightMap> = tiles.iter().map(|tiles| HeightMap::clone(tiles.map())).collect();
+    let load_drape = |source: &DrapeSource| source.load(&bare, setup.exaggeration);
+    let drape = setup.drape.as_ref().map(load_drape).transpose()?;
+    let objects = setup.objects.iter().map(|object| object.load(setup.crease_deg)).collect::<Result<_, _>>()?;
+    let input = |(tiles, placement): (&Arc<TileFile>, _)| MapInput { map: tiles.map().clone(), placement };
+    let maps = tiles.iter().zip(setup.placements()).map(input).collect();
+    Ok(Scene { maps, objects, drape, tiles })
+}
+
+/// The tiles of a map, from their file or made anew.
+fn open(setup: &Setup, source: &HeightMapSource) -> Result<TileFile, Error> {
+    let name = PathBuf::from(source.to_string());
+    let folder = Conditions::tiles_folder();
+    let interpolation = setup.parameters.interpolation;
+    TileFile::open(folder.as_deref(), &name, interpolation, &|| key(setup, source), || rows(setup, source))
+}
+
+/// All that the tiles of a map are made of.
+fn key(setup: &Setup, source: &HeightMapSource) -> Result<String, Error> {
+    let Setup { parameters, voids, resolution, spacing_m, exaggeration, seed, .. } = setup;
+    let contents = match source.path() {
+        None => format!("{source} {resolution} {seed}"),
+        Some(path) => source_sha256(path).map_err(|error| unreadable(path, error))?,
+    };
+    let level_m = if *voids == Voids::Hole { parameters.base_level_m } else { None };
+    let (voids, interpolation) = (voids.text(), parameters.interpolation);
+    let made_of = format!("{contents} {voids} {level_m:?} {spacing_m:?} {exaggeration:?} {interpolation:?}");
+    Ok(content::sha256(made_of.as_bytes()))
+}
+
+fn unreadable(path: &Path, source: io::Error) -> Error {
+    crate::scene::Error::Read { path: path.to_owned(), source }.into()
+}
+
+/// The samples, row by row: of the synthetic volcano as it is made, of a file from the map that it holds.
+fn rows(setup: &Setup, source: &HeightMapSource) -> Result<RowSource, Error> {
+    // Factors of heights change the steps of a map, and no sample.
+    if *source == HeightMapSource::Volcano {
+        let rows = RowSource::volcano(setup.resolution, setup.seed)?;
+        let rows = match setup.spacing_m {
+            Some(spacing_m) => rows.with_spacing_m(DVec2::splat(spacing_m.into()))?,
+            None => rows,
+        };
+        return Ok(rows.with_exaggeration(setup.exaggeration)?);
+    }
+    let mut map = setup.load_map(source)?;
+    if let (Voids::Hole, Some(base_m)) = (setup.voids, setup.parameters.base_level_m) {
+        map = map.with_voids(Voids::Hole, base_m)?;
+    }
+    Ok(RowSource::of(map)?)
+}
