@@ -104,7 +104,8 @@ pub fn stop_kind(error: &Error) -> Option<StopKind> {
             | E::AmbiguousDevice { .. }
             | E::MissingFeature { .. }
             | E::Shader { .. }
-            | E::Capture { .. } => None,
+            | E::Capture { .. }
+            | E::Filling { .. } => None,
             E::Interrupted => Some(StopKind::Interruption),
             E::InUse { .. } | E::Foreign { .. } | E::HostAccess { .. } | E::BeyondEnd { .. } => Some(StopKind::Crash),
         },
