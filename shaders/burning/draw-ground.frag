@@ -5,6 +5,7 @@
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
 #include "burning/ash.glsl"
+#include "burning/fading.glsl"
 #include "burning/noise.glsl"
 #include "burning/light-flames.glsl"
 
@@ -18,8 +19,6 @@ layout(location = 0) out vec4 shaded;
 
 const vec3 GROUND = vec3(0.15, 0.14, 0.13);
 const vec3 ASH_COLOR = vec3(0.42, 0.41, 0.4);
-const float FADES_FROM = 0.5; // diagonals
-const float FADES_TO = 1.6;
 
 // Triangles over a cell, by a quadratic B-spline of the 3 x 3 cells around.
 float ash_at(vec2 xz) {

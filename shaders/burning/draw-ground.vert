@@ -1,13 +1,14 @@
 #version 450
 
-// A square of the ground below the object.
+// A square of the ground below the object, as far as it can be seen.
 
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
+#include "burning/fading.glsl"
 
 layout(location = 0) out vec3 position;
 
-const float HALF_WIDTH = 3.0; // diagonals
+const float HALF_WIDTH = FADES_TO; // diagonals
 
 void main() {
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;

@@ -96,8 +96,9 @@ void main() {
         before += cell < thread ? some : 0u;
         all += some;
     }
-    if (thread == 0u && all == 0u) {
-        fire_lights[0] = FireLight(vec3(0.0), 0.0, vec3(0.0), 0.0);
+    // Those beyond the last are dark; a radius keeps them from being divided by.
+    if (thread >= all && thread < MOST_LIGHTS) {
+        fire_lights[thread] = FireLight(vec3(0.0), 1.0, vec3(0.0), float(all));
     }
     if (thread < MOST_LIGHTS) {
         if (counts[thread] > 0u) {

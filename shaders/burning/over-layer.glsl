@@ -17,10 +17,17 @@ vec3 with_fire(vec3 light, ivec2 pixel) {
     ivec2 first = ivec2(floor(at));
     vec2 t = at - vec2(first);
     ivec2 last = ivec2(billboards.last_pixel) / scale;
+    vec4 brightest = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        ivec2 texel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), last);
+        brightest = max(brightest, texelFetch(fire_layer, texel, 0));
+    }
+    // Where there is neither fire nor smoke, as in most of the picture, distances need not be told.
+    bool is_clear = brightest == vec4(0.0);
     float own = distance_at(pixel);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4 && !is_clear; i++) {
         ivec2 corner = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(first + corner, ivec2(0), last);
         vec2 near = mix(1.0 - t, t, vec2(corner));

@@ -38,8 +38,9 @@ pub(super) const BYTES: u32 = (MOST_LIGHTS * size_of::<FireLight>()) as u32;
 /// # Errors
 /// Those of the Vulkan layer.
 pub fn fire_lights(shaders: &ShaderLibrary, label: &str) -> Result<Arc<Buffer>, Error> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    upload(shaders.device(), &format!("{label}/fire-lights"), usage, &[0; BYTES as usize])
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_BUFFER;
+    let dark = FireLight { position: Vec3::ZERO, radius: 1.0, intensity: Vec3::ZERO, count: 0.0 };
+    upload(shaders.device(), &format!("{label}/fire-lights"), usage, bytemuck::cast_slice(&[dark; MOST_LIGHTS]))
 }
 
 /// The pass.
