@@ -12,6 +12,8 @@ float ground_m(vec2 place_m) {
 }
 #endif
 
+// Beyond the middles of the outermost columns the surface is level, and the ground is not.
 bool is_bare(vec3 place_m) {
-    return place_m.y - ground_m(place_m.xz) <= scene.bare_m;
+    vec2 half_m = 0.5 * scene.space_m.xz / scene.columns;
+    return place_m.y - ground_m(clamp(place_m.xz, half_m, scene.space_m.xz - half_m)) <= scene.bare_m;
 }

@@ -4,7 +4,7 @@
 
 // Eq. 6.3's quotient and the normals from finite differences of the heights (section 6.4). Near the borders the height
 // sinks to 0 and the normal turns upwards; the differences are those of the heights that have sunk, so that splats lie
-// along the slope that is drawn. Where nothing was accepted the height is 0; a fluid's sinks to its bed.
+// along the slope that is drawn. Where nothing was accepted the height is 0; a fluid's sinks to its bed, over the columns beside its front.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -22,10 +22,6 @@ layout(push_constant, std430) uniform Grid {
 float ground_m(ivec2 column) {
     return bed_at((vec2(column) + 0.5) / grid.columns).z;
 }
-#else
-float ground_m(ivec2 column) {
-    return 0.0;
-}
 #endif
 
 layout(location = 0) out vec4 normal_height;
@@ -38,12 +34,49 @@ float fraction_at(ivec2 column) {
     return grid.border_m > 0.0 ? clamp(nearest_m / grid.border_m, 0.0, 1.0) : 1.0;
 }
 
+#ifdef SIMULATION_SPH
+// Columns around one that count at its front.
+const int FRONT = 2;
+
+// Height above the ground. A column at the front has as large a part of it as there is lava around it, one without lava as large a part
+// of the mean beside it: the front would be a stair of columns.
+float lava_m(ivec2 column, float ground) {
+    float weights = 0.0;
+    float covered = 0.0;
+    float sum = 0.0;
+    for (int z = -FRONT; z <= FRONT; z++) {
+        for (int x = -FRONT; x <= FRONT; x++) {
+            ivec2 at = clamp(column + ivec2(x, z), ivec2(0), ivec2(grid.columns) - 1);
+            vec4 sums = texelFetch(accumulated_depths, at, 0);
+            float weight = exp(-0.5 * float(x * x + z * z));
+            weights += weight;
+            if (sums.a > 0.0) {
+                covered += weight;
+                sum += weight * (sums.r / sums.a - ground_m(at));
+            }
+        }
+    }
+    float share = clamp(2.0 * covered / weights - 0.5, 0.0, 1.0);
+    float mean = sum / max(covered, 1.0e-20);
+    vec4 own = texelFetch(accumulated_depths, column, 0);
+    if (own.a > 0.0) {
+        // A drop of one column keeps half of it.
+        share = max(share, 0.5);
+        mean = mix(mean, own.r / own.a - ground, share);
+    }
+    return share * mean;
+}
+
+float height_at(ivec2 column) {
+    float ground = ground_m(column);
+    return ground + fraction_at(column) * lava_m(column, ground);
+}
+#else
 float height_at(ivec2 column) {
     vec4 sums = texelFetch(accumulated_depths, column, 0);
-    float ground = ground_m(column);
-    float fraction = fraction_at(column);
-    return sums.a > 0.0 ? ground * (1.0 - fraction) + fraction * sums.r / sums.a : ground;
+    return sums.a > 0.0 ? fraction_at(column) * sums.r / sums.a : 0.0;
 }
+#endif
 
 // Height difference per metre along one axis: central, at the sides one-sided.
 float slope(ivec2 column, ivec2 axis, float spacing_m) {
