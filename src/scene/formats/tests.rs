@@ -217,6 +217,8 @@ fn shipped_meshes_have_their_documented_counts() {
         ("meshes/spider.obj", 974, 1_368),
         ("meshes/concave_polygon.obj", 64, 64),
         ("meshes/wuson.stl", 2_117, 3_732),
+        ("meshes/ant.ply", 486, 912),
+        ("meshes/airplane.ply", 1_335, 2_452),
         ("meshes/cube_binary.ply", 8, 12),
         ("meshes/Mesh_PrimitiveMode_05.gltf", 4, 2),
         ("meshes/Mesh_PrimitiveMode_11.gltf", 4, 2),

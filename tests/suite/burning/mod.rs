@@ -16,6 +16,7 @@ mod pictures;
 mod puddle;
 mod refinement;
 mod refusals;
+mod registries;
 mod solid;
 mod spreading;
 mod textures;

@@ -11,7 +11,7 @@ use crate::common::gpu_test;
 /// Of volumes.
 const UNIT: f64 = 1.0 / 4294967296.0;
 
-fn wax() -> Parameters {
+pub fn wax() -> Parameters {
     Parameters { width: 32, height: 24, speed_per_s: 0.1, flammability: 40, levels: Some(0), ..Parameters::default() }
 }
 
@@ -21,7 +21,7 @@ fn meshes() -> [Mesh; 3] {
 }
 
 /// By the divergence theorem, about a point of the ground.
-fn enclosed(fire: &Fire) -> f64 {
+pub fn enclosed(fire: &Fire) -> f64 {
     let state = fire.state();
     let place = |v: u32| state.vertices[v as usize].position.as_dvec3();
     let tetrahedron = |&[a, b, c]: &[u32; 3]| DVec3::dot(place(a), place(b).cross(place(c))) / 6.0;
@@ -29,19 +29,19 @@ fn enclosed(fire: &Fire) -> f64 {
     f64::from(model.outward) * model.triangles.iter().map(tetrahedron).sum::<f64>()
 }
 
-struct Puddle {
+pub struct Puddle {
     film: Film,
     heights: Vec<u32>,
 }
 
 impl Puddle {
-    fn of(fire: &Fire) -> Self {
+    pub fn of(fire: &Fire) -> Self {
         let puddle = fire.paper.puddle().expect("it melts");
         let newest = (fire.paper.ticks() % 2) as usize;
         Puddle { film: fire.read(&puddle.film)[0], heights: fire.read(&puddle.heights[newest]) }
     }
 
-    fn volume(&self) -> f64 {
+    pub fn volume(&self) -> f64 {
         UNIT * self.heights.iter().map(|v| f64::from(*v)).sum::<f64>()
     }
 
