@@ -1,9 +1,7 @@
 #version 450
 
-#pragma variants CONSUMED=leaves,stays
-
 // A triangle belongs to the innermost area that one of its vertices has reached (3.3). A chunk has burnt out when none of
-// its triangles can become active any more and, where they may be kept for a while, those that burn have left.
+// its triangles can become active any more.
 
 layout(local_size_x = 128) in;
 
@@ -41,12 +39,6 @@ layout(set = 0, binding = 93, std430) buffer Finished {
     uint finished[]; // of chunks
 };
 
-#ifdef CONSUMED_LEAVES
-layout(set = 0, binding = 13, std430) readonly buffer Removed {
-    uint removed[];
-};
-#endif
-
 shared uint active_count;
 shared uint open_count;
 
@@ -71,9 +63,6 @@ void main() {
                 bool burns = label != DEFORMED || old_state[vertex].left > constants.retire_at * flammability;
                 is_active = is_active || (burns && label == DEFORMED && alive[vertex] == 1u);
                 is_open = is_open || burns;
-#ifdef CONSUMED_LEAVES
-                is_open = is_open || removed[triangle] == 0u;
-#endif
             }
         }
         triangle_labels[triangle] = highest;

@@ -1,30 +1,18 @@
 #version 450
 
-#pragma variants OBJECT=kept,free,parts
+#pragma variants OBJECT=free,parts
 
-// A triangle is consumed when nothing is left at its three vertices that burns (3.5.4); it leaves the stream for good, unless parts
-// are kept and its block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
-// Where parts fall, none is kept; what is consumed leaves ash on the ground below it, and so do parts beyond the most.
+// What is consumed leaves the stream for good (3.5.4). Where parts fall it leaves ash on the ground below it, and so do parts
+// beyond the most.
 
 layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/chunks.glsl"
-#include "burning/flammability.glsl"
-#include "burning/grid.glsl"
-#include "burning/blocks.glsl"
-#include "burning/vertices.glsl"
+#include "burning/consumed.glsl"
 #include "burning/posed.glsl"
 #include "burning/ash.glsl"
-
-layout(set = 0, binding = 2, std430) readonly buffer Triangles {
-    uint triangles[];
-};
-
-layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    VertexState new_state[];
-};
 
 layout(set = 0, binding = 13, std430) buffer Removed {
     uint removed[];
@@ -33,39 +21,6 @@ layout(set = 0, binding = 13, std430) buffer Removed {
 layout(set = 0, binding = 18, std430) buffer Clock {
     Counts clock;
 };
-
-#ifdef OBJECT_KEPT
-layout(set = 0, binding = 14, std430) readonly buffer Cells {
-    uint cells[];
-};
-
-layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    Block blocks[];
-};
-
-bool has_weight(uint block) {
-    return block != NONE && blocks[min(block, constants.block_count - 1u)].live > 0;
-}
-
-bool is_needed(uint block) {
-    for (uint direction = 0u; direction < 6u; direction++) {
-        uint neighbour = neighbour_of(block, direction);
-        if (has_weight(neighbour)) {
-            bool has_other = false;
-            for (uint onward = 0u; onward < 6u; onward++) {
-                uint other = neighbour_of(neighbour, onward);
-                if (other != block && has_weight(other)) {
-                    has_other = true;
-                }
-            }
-            if (!has_other) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-#endif
 
 #ifdef OBJECT_PARTS
 layout(set = 0, binding = 71, std430) buffer Ash {
@@ -92,29 +47,16 @@ void main() {
     if (removed[triangle] == 1u) {
         return;
     }
-    uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
-    bool is_burnt = false;
-    bool is_consumed = true;
-    for (uint corner = 0u; corner < 3u; corner++) {
-        bool is_spent = new_state[at[corner]].left <= 0.0;
-        is_burnt = is_burnt || is_spent;
-        is_consumed = is_consumed && (is_spent || flammability_of(at[corner]) <= 0.0);
-    }
-    is_consumed = is_consumed && is_burnt;
+    bool is_leaving = is_consumed(triangle);
 #ifdef OBJECT_PARTS
-    is_consumed = is_consumed || part_of[at.x] == DUST;
+    is_leaving = is_leaving || part_of[triangles[3u * triangle]] == DUST;
 #endif
-    if (!is_consumed) {
+    if (!is_leaving) {
         return;
     }
-#ifdef OBJECT_KEPT
-    if (is_needed(cells[at.x])) {
-        return;
-    }
-#endif
     removed[triangle] = 1u;
 #ifdef OBJECT_PARTS
-    leave_ash(at);
+    leave_ash(uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]));
 #endif
     atomicAdd(clock.removed_triangles, 1u);
 }

@@ -47,6 +47,11 @@ impl Parameters {
         self.look == Look::Natural && self.collapse && self.removes(variant)
     }
 
+    /// True where what is consumed stays as long as something would come off (3.5.4).
+    pub fn keeps_connected(&self, variant: Variant) -> bool {
+        self.keep_connected && self.removes(variant) && !self.collapses(variant)
+    }
+
     /// True where what melts gathers in a puddle.
     pub fn has_puddle(&self, variant: Variant) -> bool {
         self.look == Look::Natural && variant == Variant::Melting

@@ -6,7 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-use super::{chunks, draw_fire, draw_ground, falling, flame_lights, parts, puddle};
+use super::{chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -72,6 +72,9 @@ impl Parameters {
         let has_light = self.has_linear_light();
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
         let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);
+        let connects = self.keeps_connected(variant);
+        let of_vertex = of_vertex + NUMBER * if_so(connects, connection::NUMBERS_OF_VERTEX);
+        let of_triangle = of_triangle + NUMBER * if_so(connects, connection::NUMBERS_OF_TRIANGLE);
         // L of each vertex, epsilon of each edge, and the materials of the draw vertices.
         let several = self.materials.is_some();
         let of_vertex = of_vertex + if_so(several, 4);

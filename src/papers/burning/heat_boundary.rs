@@ -1,7 +1,7 @@
 //! `heat-boundary` (3.3): the clock, what the tick visits, and the areas of vertices and triangles.
 
 use super::buffers::Buffers;
-use super::parameters::{Parameters, Variant};
+use super::parameters::Variant;
 use super::parts::Parts;
 use super::ping_pong::{PingPong, Work, build, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
@@ -12,7 +12,7 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 /// Those of the Vulkan layer.
 pub fn heat_boundary(
     shaders: &ShaderLibrary,
-    (variant, parameters): (Variant, &Parameters),
+    variant: Variant,
     buffers: &Buffers,
     parts: Option<&Parts>,
 ) -> Result<PingPong<5>, Error> {
@@ -42,12 +42,8 @@ pub fn heat_boundary(
     };
     let vertices = labelled("heat-boundary-vertices").with("Rest", &buffers.rest);
     let vertices = vertex_chunks.changing(vertices).with("Finished", &vertex_chunks.finished);
-    // What is kept for its neighbours' sake stays open until it leaves; without that a triangle leaves as the last of it burns out.
-    let triangles = match parameters.removes(variant) && parameters.keep_connected && parts.is_none() {
-        true => labelled("heat-boundary-triangles-leaves").with("Removed", &buffers.removed),
-        false => labelled("heat-boundary-triangles-stays"),
-    };
-    let triangles = triangles.with("Triangles", &buffers.triangles).with("TriangleLabels", &buffers.triangle_labels);
+    let triangles = labelled("heat-boundary-triangles").with("Triangles", &buffers.triangles);
+    let triangles = triangles.with("TriangleLabels", &buffers.triangle_labels);
     let triangles = triangle_chunks.changing(triangles).with("Finished", &triangle_chunks.finished);
     Ok(PingPong::new([
         (build(shaders, clock, &[])?, Work::Elements(1)),

@@ -23,6 +23,7 @@ mod block_weights;
 mod buffers;
 mod choices;
 mod chunks;
+mod connection;
 mod draw;
 mod draw_fire;
 mod draw_ground;
@@ -88,6 +89,7 @@ use crate::scene::{Camera, Mesh};
 pub use self::beside::Beside;
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::chunks::{ChunkBuffers, Visits};
+pub use self::connection::Connection;
 pub use self::flame_lights::{FireLight, LIGHT_CELLS};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
@@ -194,7 +196,7 @@ impl Burning {
             device: device.clone(),
             variant,
             loading: (!parameters.preload).then(|| Loading::new(device, &buffers)).transpose()?,
-            heat_boundary: heat_boundary(shaders, (variant, parameters), &buffers, parts.as_ref())?,
+            heat_boundary: heat_boundary(shaders, variant, &buffers, parts.as_ref())?,
             internal_deformation: InternalDeformation::new(
                 shaders,
                 variant,
@@ -210,7 +212,7 @@ impl Burning {
                 shaders,
                 label,
                 (variant, parameters),
-                &buffers,
+                &mut buffers,
                 refinement.as_ref(),
                 parts.as_ref().zip(ash.as_ref()),
                 &model,
@@ -305,7 +307,7 @@ impl Burning {
             if mapped_tick == Some(self.ticks()) {
                 self.vertex_mapping.record(frame, tick)?;
             }
-            self.surface_removal.mark(frame, tick)?;
+            self.surface_removal.mark(frame, self.ticks())?;
             self.is_shaded = false;
         }
         Ok(())

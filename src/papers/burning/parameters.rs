@@ -117,7 +117,7 @@ pub struct Parameters {
     pub time_division: u32,
     /// Loads what never changes before the first frame (3.7.4), not in every frame.
     pub preload: bool,
-    /// Keeps what holds a neighbouring block to the rest (3.5.4), where parts do not fall.
+    /// Keeps what is consumed while something would come off (3.5.4), where parts do not fall.
     pub keep_connected: bool,
     /// The dissertation's look, or ours with all that goes beyond its text.
     pub look: Look,
@@ -258,8 +258,7 @@ const CLIMB: &str = "Heat along the surface comes this many times farther where 
 const WIND: &str = "Wind, which flames and smoke drift with, and which leans the climbing heat";
 const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";
 const PRELOAD: &str = "Load what never changes before the first frame, or again in every frame";
-const KEEP_CONNECTED: &str =
-    "Never leave a block that has weight without neighbours, or let pieces come off; off where parts fall";
+const KEEP_CONNECTED: &str = "Keep what is burnt out while something would come off, or let it; off where parts fall";
 const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
 const SETTING: &str = "melting: wax comes to rest in this time after the fire, of the natural look";
 const BURN_AWAY: &str = "solid: let what has burnt out leave as ash, of the natural look, or stay as char";

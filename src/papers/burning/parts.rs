@@ -46,18 +46,18 @@ host_block! {
     /// Progress of the search (`burning/parting.glsl`).
     #[derive(Default)]
     pub(super) struct Progress {
-        is_unsettled: u32,
-        is_numbered: u32,
-        part_count: u32,
-        moment_bits: u32,
+        pub(super) is_unsettled: u32,
+        pub(super) is_numbered: u32,
+        pub(super) part_count: u32,
+        pub(super) moment_bits: u32,
     }
 }
 
 host_block! {
     /// Push constants of `burning/parts-unite.comp`.
-    struct Touches {
+    pub(super) struct Touches {
         /// Pairs of vertices that touch.
-        count: u32,
+        pub(super) count: u32,
     }
 }
 

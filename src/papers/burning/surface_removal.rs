@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::Burning;
 use super::buffers::Buffers;
+use super::connection::Connection;
 use super::model::{Model, draw_order};
 use super::parameters::{Parameters, Variant};
 use super::parts::Parts;
@@ -33,10 +35,17 @@ host_block! {
 /// Triangles, or nodes of the refinement pattern, that one thread counts (`burning/runs.glsl`).
 const RUN: u32 = 16;
 
+/// The steps for each ping-pong index of the tick, those of the compaction's three phases last.
+enum Steps {
+    /// The marks of what is consumed.
+    Marking([[Pass; 4]; 2]),
+    /// The search for what hangs together.
+    Connecting(Connection, [[Pass; 10]; 2]),
+}
+
 /// The steps of the pass.
 pub struct SurfaceRemoval {
-    /// For each ping-pong index of the tick: the marks of what is consumed, and the three phases of the compaction.
-    steps: [[Pass; 4]; 2],
+    steps: Steps,
     /// Consumed triangles leave the stream.
     removes: bool,
     /// Threads of the compaction's first and last phase, and numbers that its second scans: one for each run.
@@ -54,33 +63,19 @@ impl SurfaceRemoval {
         shaders: &ShaderLibrary,
         label: &str,
         (variant, parameters): (Variant, &Parameters),
-        buffers: &Buffers,
+        buffers: &mut Buffers,
         refinement: Option<&Refinement>,
         fallen: Option<(&Parts, &Arc<Buffer>)>,
         model: &Model,
     ) -> Result<Self, Error> {
+        let is_connected = parameters.keeps_connected(variant);
+        let connection = is_connected.then(|| Connection::new(shaders, label, buffers, model)).transpose()?;
+        let buffers = &*buffers;
         let step =
             |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
         let runs = refinement.map_or(model.triangle_count(), Refinement::node_count).div_ceil(RUN);
         let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(runs));
         let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let mark = match (fallen, parameters.keep_connected) {
-            (Some((parts, ash)), _) => step("burning/surface-removal-mark-parts.comp")
-                .with("PartOf", &parts.part_of)
-                .with("Parts", &parts.parts)
-                .with("Ash", ash),
-            (None, true) => step("burning/surface-removal-mark-kept.comp")
-                .with("Cells", &buffers.cells)
-                .with("Blocks", &buffers.blocks),
-            (None, false) => step("burning/surface-removal-mark-free.comp"),
-        };
-        let mark = mark
-            .with("Flammabilities", &buffers.flammabilities)
-            .with("Triangles", &buffers.triangles)
-            .with("Removed", &buffers.removed)
-            .with("Clock", &buffers.clock);
-        let mark = buffers.triangle_chunks.changing(mark);
-        let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
         let draw_order = parameters.orders_triangles(refinement.is_some()).then(|| {
             let order = draw_order(model.lattice.finest(), model.draw_vertex_count());
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -116,26 +111,43 @@ impl SurfaceRemoval {
             .with("GroupSums", &sums)
             .build(shaders)?;
         let write = over_all(write).with("Corners", &buffers.corners).with("Stream", &buffers.stream).build(shaders)?;
+        let compaction = [count, scan, write];
+        let steps = match connection {
+            Some((connection, steps)) => Steps::Connecting(
+                connection,
+                steps.map(|[reset, choice, unite, flatten, check, pieces, leave]| {
+                    let [count, scan, write] = compaction.clone();
+                    Pass::steps([reset, choice, unite, flatten, check, pieces, leave, count, scan, write])
+                }),
+            ),
+            None => Steps::Marking(marks(shaders, buffers, fallen)?.map(|mark| {
+                let [count, scan, write] = compaction.clone();
+                Pass::steps([mark, count, scan, write])
+            })),
+        };
         Ok(SurfaceRemoval {
-            steps: marks.map(|mark| Pass::steps([mark, count.clone(), scan.clone(), write.clone()])),
+            steps,
             removes: parameters.removes(variant),
             runs,
             leaves: refinement.map(|refinement| Leaves { level_of_detail: refinement.level_of_detail }),
         })
     }
 
-    /// Marks what the tick that writes the state of index `tick` has consumed.
+    /// Marks what has been consumed by `tick`, the ticks since the fire was lit.
     ///
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn mark(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+    pub fn mark(&self, frame: &mut Frame<'_>, tick: u64) -> Result<(), Error> {
         if !self.removes {
             return Ok(());
         }
-        let [mark, ..] = &self.steps[tick];
-        frame.compute(mark, |dispatch| {
-            dispatch.groups_indirect();
-        })
+        let newest = (tick % 2) as usize;
+        match &self.steps {
+            Steps::Connecting(connection, steps) => connection.record(frame, &steps[newest], tick),
+            Steps::Marking(steps) => frame.compute(&steps[newest][0], |dispatch| {
+                dispatch.groups_indirect();
+            }),
+        }
     }
 
     /// Makes the stream and its draw's parameters after the tick that wrote the state of index `tick`.
@@ -143,7 +155,16 @@ impl SurfaceRemoval {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn compact(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
-        let [_, count, scan, write] = &self.steps[tick];
+        let (count, scan, write) = match &self.steps {
+            Steps::Marking(steps) => {
+                let [_, count, scan, write] = &steps[tick];
+                (count, scan, write)
+            }
+            Steps::Connecting(_, steps) => {
+                let [.., count, scan, write] = &steps[tick];
+                (count, scan, write)
+            }
+        };
         let over_all = |frame: &mut Frame<'_>, step: &Pass| {
             frame.compute(step, |dispatch| {
                 if let Some(leaves) = &self.leaves {
@@ -158,4 +179,37 @@ impl SurfaceRemoval {
         })?;
         over_all(frame, write)
     }
+}
+
+impl Burning {
+    /// The search that keeps an object in one, of an object that is kept so.
+    pub fn connection(&self) -> Option<&Connection> {
+        match &self.surface_removal.steps {
+            Steps::Connecting(connection, _) => Some(connection),
+            Steps::Marking(_) => None,
+        }
+    }
+}
+
+/// The marks of what is consumed, for each ping-pong index of the tick.
+fn marks(
+    shaders: &ShaderLibrary,
+    buffers: &Buffers,
+    fallen: Option<(&Parts, &Arc<Buffer>)>,
+) -> Result<[Pass; 2], Error> {
+    let step = |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
+    let mark = match fallen {
+        Some((parts, ash)) => step("burning/surface-removal-mark-parts.comp")
+            .with("PartOf", &parts.part_of)
+            .with("Parts", &parts.parts)
+            .with("Ash", ash),
+        None => step("burning/surface-removal-mark-free.comp"),
+    };
+    let mark = mark
+        .with("Flammabilities", &buffers.flammabilities)
+        .with("Triangles", &buffers.triangles)
+        .with("Removed", &buffers.removed)
+        .with("Clock", &buffers.clock);
+    let mark = buffers.triangle_chunks.changing(mark);
+    ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])
 }

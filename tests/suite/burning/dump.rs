@@ -41,6 +41,10 @@ pub fn state(fire: &Fire, is_shown: bool) -> State {
         flows: points(&buffers.flows).iter().map(point).chain(repeat(DVec3::ZERO)).take(state.len()).collect(),
         mapped: mapped.iter().map(point).collect(),
         removed: fire.read::<u32>(&buffers.removed).iter().map(|r| *r != 0).collect(),
+        left_out: match fire.paper.connection() {
+            Some(connection) => fire.read::<u32>(&connection.held).iter().map(|held| *held == 2).collect(),
+            None => vec![false; fire.paper.model().triangles.len()],
+        },
         normals: normals.iter().map(point).collect(),
         chars: normals.iter().map(|n| n[3].into()).collect(),
         glows: colors.iter().map(|c| c[3].into()).collect(),

@@ -7,7 +7,6 @@ use fumarole::scene::{Mesh, MeshSource};
 
 use super::falling::assert_supported;
 use super::fire::Fire;
-use super::melting::in_range;
 use super::puddle::{Puddle, enclosed, wax};
 use crate::common::gpu_test;
 
@@ -27,11 +26,10 @@ fn nothing_of_them_hovers() {
 }
 
 #[test]
-fn their_wax_keeps_its_volume_and_its_edges_and_comes_to_rest() {
+fn their_wax_keeps_its_volume_and_comes_to_rest() {
     gpu_test(|device| {
         for file in FILES {
-            let parameters = wax();
-            let mut fire = Fire::new(device, Variant::Melting, &parameters, &load(file));
+            let mut fire = Fire::new(device, Variant::Melting, &wax(), &load(file));
             let start = enclosed(&fire);
             let mut left_ticks = None;
             while left_ticks != Some(0) {
@@ -44,8 +42,6 @@ fn their_wax_keeps_its_volume_and_its_edges_and_comes_to_rest() {
                 assert!(fire.paper.ticks() < 6000, "{file} burns on");
             }
             let state = fire.state();
-            let share = in_range(&fire, &state, &parameters);
-            assert!(share >= 0.95, "{file}: {share} of the edges are in range");
             fire.ticks(6);
             assert!(fire.state().vertices == state.vertices, "{file} moves");
         }

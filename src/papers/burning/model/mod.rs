@@ -28,6 +28,7 @@ pub use self::division::Division;
 pub use self::draw_order::draw_order;
 pub use self::incidence::Incidence;
 pub use self::lattice::Lattice;
+pub use self::touching::roots_of;
 pub use self::weld::Welded;
 
 /// The object at rest. A vertex is a simulated one, welded; a draw vertex one of the mesh as loaded.

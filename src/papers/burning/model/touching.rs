@@ -13,7 +13,7 @@ const NEAR: f32 = 0.02;
 /// where an edge of one part, longer by that reach at both ends, passes through a triangle of another, the nearest end and
 /// corner. None for a mesh in one part.
 pub fn touching(positions: &[Vec3], triangles: &[[u32; 3]], mean_edge: f32) -> Vec<[u32; 2]> {
-    let roots = roots(positions.len(), triangles);
+    let roots = roots_of(positions.len(), triangles);
     if triangles.iter().all(|&[a, ..]| roots[a as usize] == roots[triangles[0][0] as usize]) {
         return Vec::new();
     }
@@ -66,7 +66,7 @@ fn crossing(positions: &[Vec3], triangles: &[[u32; 3]], roots: &[u32], near: f32
 }
 
 /// The lowest vertex that each one hangs together with.
-fn roots(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+pub fn roots_of(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
     fn root(above: &mut [u32], vertex: u32) -> u32 {
         let mut at = vertex;
         while above[at as usize] != at {

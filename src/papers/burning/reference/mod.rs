@@ -63,7 +63,7 @@ pub struct Constants {
     pub floor: f64,
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
-    /// Blocks that hold a neighbour to the rest are kept (3.5.4).
+    /// What is consumed stays as long as something would come off (3.5.4).
     pub keep_connected: bool,
     /// Signs of rotations are random (3.5.1).
     pub random_rotation: bool,
@@ -140,6 +140,8 @@ pub struct State {
     pub mapped: Vec<DVec3>,
     /// Of the finest triangles.
     pub removed: Vec<bool>,
+    /// Of the finest triangles: the search for what hangs together does without it.
+    pub left_out: Vec<bool>,
     /// Of the drawn vertices, like what follows.
     pub normals: Vec<DVec3>,
     /// Charring of each drawn vertex, 0 to 1.
@@ -169,6 +171,7 @@ impl State {
             flows: vec![DVec3::ZERO; n],
             mapped: model.rest.clone(),
             removed: vec![false; model.triangles.len()],
+            left_out: vec![false; model.triangles.len()],
             normals: vec![DVec3::ZERO; corners],
             chars: vec![0.0; corners],
             glows: vec![0.0; corners],
