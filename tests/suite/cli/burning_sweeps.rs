@@ -87,5 +87,4 @@ fn laws_are_measured_on_any_mesh() {
         // The teapot is open, and has no volume to keep.
         assert!(holds != Some(false) || row["law"].as_str().unwrap().starts_with("edges"), "{row}");
     }
-    assert!(rows[0]["measured"].as_f64().unwrap() > 0.0, "something falls: {rows:?}");
 }
