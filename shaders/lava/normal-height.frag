@@ -36,7 +36,7 @@ float fraction_at(ivec2 column) {
 
 #ifdef SIMULATION_SPH
 // Columns around one that count at its front.
-const int FRONT = 2;
+const int FRONT = 1;
 
 // Height above the ground. A column at the front has as large a part of it as there is lava around it, one without lava as large a part
 // of the mean beside it: the front would be a stair of columns.

@@ -95,7 +95,7 @@ fn fronts(heights: &[Option<f64>]) -> Vec<f64> {
     let of = |at: usize| {
         let (i, k) = (at as i64 % 30, at as i64 / 30);
         let (mut weights, mut covered, mut sum) = (0.0, 0.0, 0.0);
-        for (x, z) in (-2i64..=2).flat_map(|z| (-2i64..=2).map(move |x| (x, z))) {
+        for (x, z) in (-1i64..=1).flat_map(|z| (-1i64..=1).map(move |x| (x, z))) {
             let weight = (-0.5 * (x * x + z * z) as f64).exp();
             weights += weight;
             if let Some(height) = heights[((k + z).clamp(0, rows - 1) * 30 + (i + x).clamp(0, 29)) as usize] {
@@ -147,7 +147,7 @@ fn the_surface_lies_on_the_bed() {
                 beside += usize::from(heights[at].is_none() && above > 0.01);
                 covered += usize::from(above > 0.2);
             }
-            assert!(bare > 200 && beside > 5 && covered > 20, "{variant:?}: {bare} {beside} {covered}");
+            assert!(bare > 200 && beside > 3 && covered > 20, "{variant:?}: {bare} {beside} {covered}");
             // Land that is drawn, in the picture's lower half.
             let picture: Vec<[u8; 4]> = texels(device, lava.picture());
             let (land, lit) = picture.iter().fold((0, 0), |(land, lit), [red, green, blue, _]| {
