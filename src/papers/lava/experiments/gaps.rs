@@ -1,6 +1,6 @@
 //! Gaps between splats (chapter 9): pixels at which a ray meets the surface, and a picture of splats shows what lies behind it.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
@@ -40,26 +40,55 @@ fn cameras(parameters: &Parameters) -> Vec<Camera> {
     ELEVATIONS_DEG.into_iter().flat_map(of).collect()
 }
 
+/// Direction of the ray through a pixel's middle, its length along the view 1.
+fn direction(parameters: &Parameters, at: usize) -> Vec3 {
+    let Parameters { camera, width, height, .. } = parameters;
+    let view = camera.view();
+    let [right, up, back] = [view.row(0), view.row(1), view.row(2)].map(|row| row.truncate());
+    let half = (0.5 * camera.vertical_fov_rad).tan();
+    let along = |at: usize, count: u32| (at as f32 + 0.5) / count as f32 * 2.0 - 1.0;
+    let (x, y) = (along(at % *width as usize, *width), along(at / *width as usize, *height));
+    half * parameters.aspect() * x * right - half * y * up - back
+}
+
 /// Depths of a picture in metres, row by row.
 struct Depths {
     width: usize,
     metres: Vec<f32>,
-    /// Of a pixel without lava.
-    none_m: f32,
+    /// False without lava, and at the walls that close the space's sides for rays alone.
+    is_sheet: Vec<bool>,
 }
 
 impl Depths {
+    /// Of the parameters' camera, from shares of the range of depths.
+    fn of(parameters: &Parameters, shares: &[f32]) -> Self {
+        let range_m = depth_range_m(parameters);
+        let [columns, _, rows] = parameters.density;
+        let half_column_m = 0.5 * Vec2::new(parameters.space_m.x / columns as f32, parameters.space_m.z / rows as f32);
+        let is_sheet = |(at, share): (usize, &f32)| {
+            let place_m = parameters.camera.eye + (share * range_m - parameters.epsilon_m) * direction(parameters, at);
+            let place_m = Vec2::new(place_m.x, place_m.z);
+            let side_m = place_m.min(Vec2::new(parameters.space_m.x, parameters.space_m.z) - place_m);
+            *share < 0.9999 && side_m.cmpgt(half_column_m).all()
+        };
+        Depths {
+            width: parameters.width as usize,
+            metres: shares.iter().map(|share| share * range_m).collect(),
+            is_sheet: shares.iter().enumerate().map(is_sheet).collect(),
+        }
+    }
+
     /// True well inside an outline: all neighbours up to two pixels away are within so many metres of the pixel.
     fn is_inside(&self, at: usize, within_m: f32) -> bool {
         let (x, y) = ((at % self.width) as i64, (at / self.width) as i64);
         let height = (self.metres.len() / self.width) as i64;
         let mut around = (-2..=2).flat_map(|down| (-2..=2).map(move |across| (x + across, y + down)));
-        self.metres[at] < self.none_m
-            && around.all(|(x, y)| {
-                (0..self.width as i64).contains(&x)
-                    && (0..height).contains(&y)
-                    && (self.metres[y as usize * self.width + x as usize] - self.metres[at]).abs() < within_m
-            })
+        around.all(|(x, y)| {
+            (0..self.width as i64).contains(&x) && (0..height).contains(&y) && {
+                let beside = y as usize * self.width + x as usize;
+                self.is_sheet[beside] && (self.metres[beside] - self.metres[at]).abs() < within_m
+            }
+        })
     }
 
     /// Pixels well inside an outline, and those of them at which splats show what lies so far behind.
@@ -86,13 +115,9 @@ fn depths(machine: &mut Machine, setup: &Setup, cameras: &[Camera], frame: u32) 
         picture::render(machine, &mut paper, frame)?;
         // It sees as far as there is something.
         let camera = paper.camera().unwrap_or(*camera);
-        let range_m = depth_range_m(&Parameters { camera, ..setup.parameters.clone() });
+        let parameters = Parameters { camera, ..setup.parameters.clone() };
         let shares: Vec<f32> = bytemuck::pod_collect_to_vec(&read_image(&machine.device, &paper.splatting.depth)?);
-        all.push(Depths {
-            width: setup.parameters.width as usize,
-            metres: shares.iter().map(|share| share * range_m).collect(),
-            none_m: 0.9999 * range_m,
-        });
+        all.push(Depths::of(&parameters, &shares));
     }
     Ok(all)
 }
@@ -150,7 +175,10 @@ mod tests {
 
     #[test]
     fn gaps_are_pixels_inside_that_show_what_lies_behind() {
-        let of = |metres: Vec<f32>| Depths { width: 8, metres, none_m: 19.0 };
+        let of = |metres: Vec<f32>| {
+            let is_sheet = metres.iter().map(|&m| m < 19.0).collect();
+            Depths { width: 8, metres, is_sheet }
+        };
         let mut rays = vec![3.0; 64];
         // The last column is empty.
         (0..8).for_each(|row| rays[8 * row + 7] = 20.0);
@@ -161,6 +189,18 @@ mod tests {
         // From 2 to 5 down, from 2 to 4 across.
         assert_eq!(of(rays.clone()).gaps(&of(splats), 0.1, 0.1), (12, 1));
         assert_eq!(of(vec![20.0; 64]).gaps(&of(rays), 0.1, 0.1), (0, 0));
+    }
+
+    /// The ray through a pixel comes out in its middle.
+    #[test]
+    fn rays_go_through_their_pixels() {
+        let p = Parameters { width: 40, height: 30, ..Parameters::default() };
+        let to_clip = p.camera.projection(p.aspect()) * p.camera.view();
+        for at in [0, 39, 615, 1199] {
+            let clip = to_clip.project_point3(p.camera.eye + 3.0 * direction(&p, at));
+            let pixel = (Vec2::new(clip.x, clip.y) + 1.0) * 0.5 * Vec2::new(40.0, 30.0) - 0.5;
+            assert!(pixel.distance(Vec2::new((at % 40) as f32, (at / 40) as f32)) < 1e-3, "{at}: {pixel}");
+        }
     }
 
     #[test]

@@ -106,8 +106,8 @@ struct Distances {
 pub fn fields(machine: &mut Machine, setup: &Setup, kind: SurfaceKind, frame: u32) -> Result<Fields, Error> {
     let mut setup = setup.clone();
     setup.parameters.surface = kind;
-    // Nothing is looked at.
-    (setup.parameters.splats, setup.parameters.width, setup.parameters.height) = ([1; 2], 1, 1);
+    // Nothing is looked at; a picture of no pixels would be a warning.
+    (setup.parameters.splats, setup.parameters.width, setup.parameters.height) = ([1; 2], 160, 120);
     let scene = setup.load()?;
     let mut paper = build(machine, &setup, &scene, Variant::Paper)?.paper;
     picture::render(machine, &mut paper, frame)?;
