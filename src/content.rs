@@ -1,23 +1,25 @@
 //! Identity by content: what a record says of files, pictures and binaries, whatever their names.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
+
+use crate::file;
 
 /// SHA-256 of bytes in lower-case hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::digest(bytes).as_ref())
 }
 
-/// SHA-256 of a file in lower-case hexadecimal.
+/// SHA-256 of a regular file in lower-case hexadecimal.
 ///
 /// # Errors
-/// The file cannot be read.
+/// As [`file::open`]; the file cannot be read.
 pub fn file_sha256(path: &Path) -> io::Result<String> {
     let mut hasher = Sha256::new();
-    let mut input = BufReader::with_capacity(1 << 20, File::open(path)?);
+    let mut input = BufReader::with_capacity(1 << 20, file::open(path)?.0);
     loop {
         let block = input.fill_buf()?;
         if block.is_empty() {

@@ -87,11 +87,12 @@ impl Concat for [&OsStr] {
 type Reader = (fn() -> Program, &'static str);
 
 /// Every option that reads a file.
-fn readers() -> [Reader; 14] {
+fn readers() -> [Reader; 15] {
     [
         (|| caustics("render --mesh"), "obj"),
         (|| caustics("render --mesh"), "gltf"),
         (|| terrain("render --map"), "asc"),
+        (|| terrain("render --variant tiled-compute --stream --map"), "asc"),
         (|| terrain("render --map"), "png"),
         (|| terrain("render --drape"), "png"),
         (|| gas("render --volume-file"), "nrrd"),
