@@ -37,7 +37,7 @@ void main() {
     bool is_shown_through = false; // by the fragment before, which it intersects
     uint l = 0u; // the fragment's next light
     State before = NO_STATE;
-    if (is_carried(LIGHT_ATTENUATION, list)) {
+    if (is_carried(LIGHT_ATTENUATION)) {
         before = state_of(list);
         f = before.a.x;
         covered = before.a.y;

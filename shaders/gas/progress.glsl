@@ -25,14 +25,17 @@ struct State {
 
 const State NO_STATE = State(uvec4(NONE), uvec4(NONE), uvec3(NONE));
 
-// The pass goes on with what its dispatch before has left. Conditions on constants alone are avoided, see counts.glsl.
-bool is_carried(uint pass, uint list) {
-    return (min(band.call, 1u) & uint(progress[3u * list + 2u].w == pass + 1u)) != 0u;
+uint held = 0u; // the pass, plus 1, that has not finished the pixel in hand
+
+// The pixel is this dispatch's: all are the first one's. Conditions on constants alone are avoided, see counts.glsl.
+bool is_due(uint pass, uint list) {
+    held = progress[3u * list + 2u].w;
+    return (uint(band.call == 0u) | uint(held == pass + 1u)) != 0u;
 }
 
-// The pixel is this dispatch's: all are the first one's.
-bool is_due(uint pass, uint list) {
-    return (uint(band.call == 0u) | uint(progress[3u * list + 2u].w == pass + 1u)) != 0u;
+// Of a pixel that is due: the pass goes on with what its dispatch before has left.
+bool is_carried(uint pass) {
+    return (min(band.call, 1u) & uint(held == pass + 1u)) != 0u;
 }
 
 State state_of(uint list) {
@@ -52,7 +55,7 @@ void leave(uint pass, uint list, bool is_done, State before, State state) {
         if (state.a == before.a && state.b == before.b && state.c == before.c) {
             stuck[pass] = 1u;
         }
-    } else if (progress[3u * list + 2u].w == pass + 1u) {
+    } else if (held == pass + 1u) {
         progress[3u * list + 2u].w = 0u;
     }
 }

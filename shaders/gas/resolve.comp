@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants VEINS=none,solid
+#pragma variants VEINS=none,solid COUNT=one,several
 
 // Section "Combining A-buffer and volume rendering techniques": surface fragments and the gas's sections, sorted into
 // one list, are blended front to back by their masks, as compositing 32 sub-pixels would. Only what is visible is
@@ -16,12 +16,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/lights-several.glsl"
+#include "gas/lights-{COUNT}.glsl"
 #include "gas/lists.glsl"
-#include "gas/object.glsl"
 
 layout(set = 0, binding = 6, std430) readonly buffer Objects {
-    Object objects[];
+    uvec4 object_words[]; // six of each Object, see object.glsl
 };
 
 #include "gas/nodes.glsl"
@@ -57,32 +56,40 @@ Color color_at(uint fragment) {
     return Color(color.x, color.y);
 }
 
-uint object_of(uint fragment) {
-    return surfaces[fragment].y;
+// What an object is made of, as far as shading asks for it.
+struct Material {
+    vec3 checker_color;
+    float checker_edge_m;
+    vec3 offset_m;
+    float highlight_strength;
+    float highlight_exponent;
+    float fade_m;
+};
+
+Material material_of(uint object) {
+    vec4 checkers = uintBitsToFloat(object_words[6u * object + 1u]);
+    vec4 place = uintBitsToFloat(object_words[6u * object + 2u]);
+    vec4 ends = uintBitsToFloat(object_words[6u * object + 3u]);
+    return Material(checkers.xyz, checkers.w, place.xyz, place.w, ends.x, ends.w);
 }
 
-// Its own, less what fades before the opaque surfaces that end the pixel's tracing.
-float seen_opacity(uint fragment, Link link, float end_m) {
-    float fade_m = objects[object_of(fragment)].fade_m;
-    float t = fade_m > 0.0 ? clamp((end_m - mean_depth(link)) / fade_m, 0.0, 1.0) : 1.0;
-    return opacity_of(color_at(fragment)) * (t * t * (3.0 - 2.0 * t));
+// The fragment's own, less what fades before the opaque surfaces that end the pixel's tracing.
+float seen_opacity(Color color, float fade_m, float depth_m, float end_m) {
+    float t = fade_m > 0.0 ? clamp((end_m - depth_m) / fade_m, 0.0, 1.0) : 1.0;
+    return opacity_of(color) * (t * t * (3.0 - 2.0 * t));
 }
 
 #include "gas/checkers.glsl"
 #include "gas/veins-{VEINS}.glsl"
 
-// Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
-vec3 shaded(uint f, vec3 ray) {
-    Surface surface = surface_at(f);
-    vec3 albedo = color_of(color_at(f));
-    vec3 point = frame.eye + ray * mean_depth(link_at(f));
+// Light that fragment f sends to the eye, per opacity. The highlight is Phong's.
+vec3 shaded(uint f, Surface surface, Material material, vec3 color, float depth_m, vec3 ray) {
+    vec3 point = frame.eye + ray * depth_m;
     vec3 direction = normalize(ray);
     vec3 normal = unpack_normal(surface.normal);
     normal = dot(normal, ray) > 0.0 ? -normal : normal;
-    albedo = checkered(surface.object, albedo, point, normal, ray);
-    albedo = veined(surface.object, albedo, point, normal, ray);
-    float strength = objects[surface.object].highlight_strength;
-    float exponent = objects[surface.object].highlight_exponent;
+    vec3 albedo = checkered(material, color, point, normal, ray);
+    albedo = veined(surface.object, material.offset_m, albedo, point, normal, ray);
     vec3 sum = albedo * frame.ambient;
     uint l = 0u;
     for (; l < light_count; l++) {
@@ -95,7 +102,7 @@ vec3 shaded(uint f, vec3 ray) {
                 light *= 1.0 - attenuations[f * light_count + l];
             }
             float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
-            sum += light * (albedo * facing + strength * pow(mirrored, exponent));
+            sum += light * (albedo * facing + material.highlight_strength * pow(mirrored, material.highlight_exponent));
         }
     }
     is_cut = is_cut || l < light_count;
@@ -127,7 +134,7 @@ void main() {
     float transmittance = 1.0;
     uint node = head;
     State before = NO_STATE;
-    if (is_carried(RESOLVE, list)) {
+    if (is_carried(RESOLVE)) {
         before = state_of(list);
         remaining = before.a.x;
         group = before.a.y;
@@ -163,26 +170,44 @@ void main() {
         bool is_passed = node == NONE || transmittance <= 0.0;
         if (is_met && !is_passed) {
             uint narrowed = group & link.mask;
+            Surface surface = surface_at(node);
+            Color at_node = color_at(node);
+            Material material = material_of(surface.object);
+            float depth_m = mean_depth(link);
+            float own = seen_opacity(at_node, material.fade_m, depth_m, end_m);
+            float taken = transmittance * own;
             // The fraction of this fragment that shows its neighbour instead.
             float fraction = 0.0;
             uint behind = fragment_at(link.next);
+            Link next = Link(NONE, 0u, 0.0, 0.0);
+            float overlap = 0.0;
             if (behind != NONE) {
-                Link next = link_at(behind);
-                float shown = fraction_behind(link, next) * seen_opacity(behind, next, end_m);
-                if (shown > 0.0 && object_of(behind) != object_of(node)) {
+                next = link_at(behind);
+                overlap = fraction_behind(link, next);
+            }
+            if (overlap > 0.0) {
+                uint object = surfaces[behind].y;
+                float fade_m = uintBitsToFloat(object_words[6u * object + 3u].w);
+                float shown = overlap * seen_opacity(color_at(behind), fade_m, mean_depth(next), end_m);
+                if (shown > 0.0 && object != surface.object) {
                     bool is_there = (next.mask & bit) != 0u;
                     fraction = is_there ? shown : 0.0;
                     narrowed &= is_there ? next.mask : ~next.mask;
                 }
             }
-            float own = seen_opacity(node, link, end_m);
-            float taken = transmittance * own;
             uint count = fraction > 0.0 ? 2u : 1u;
             vec3 light = vec3(0.0);
             uint i = 0u;
             for (; i < count; i++) {
+                if (i > 0u) {
+                    surface = surface_at(behind);
+                    at_node = color_at(behind);
+                    material = material_of(surface.object);
+                    depth_m = mean_depth(next);
+                }
                 float weight = i == 0u ? 1.0 - fraction : fraction;
-                light += shaded(i == 0u ? node : behind, ray) * (taken * weight);
+                uint f = i == 0u ? node : behind;
+                light += shaded(f, surface, material, color_of(at_node), depth_m, ray) * (taken * weight);
             }
             // Nothing is kept of a fragment that was not shaded to its end.
             is_cut = is_cut || i < count;

@@ -66,7 +66,7 @@ void main() {
     float transparency = 1.0;
     Gas begun = NOTHING;
     State before = NO_STATE;
-    if (is_carried(VOLUME, list)) {
+    if (is_carried(VOLUME)) {
         before = state_of(list);
         depth = uintBitsToFloat(before.a.x);
         fragment = before.a.y;

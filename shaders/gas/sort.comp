@@ -1,7 +1,7 @@
 #version 450
 
-// Each pixel's list by mean depth ("average z value"), then object, then triangle: a merge sort of the links, for any
-// length. The extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments
+// Each pixel's list by mean depth ("average z value"), then object, then triangle: runs of up to eight in registers, which are
+// merged, for any length. The extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments
 // cover the pixel. The sections that `volume` will make are counted and their slots reserved, so that `volume` needs no
 // atomics.
 
@@ -36,15 +36,14 @@ layout(set = 0, binding = 12, std430) buffer Pixels {
     Pixel pixels[];
 };
 
-float depth_of(uint fragment) {
-    vec2 depths = uintBitsToFloat(links[fragment].zw);
-    return 0.5 * (depths.x + depths.y);
+float mean_depth_of(uvec4 link) {
+    return 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
 }
 
 // Triangles are numbered object by object.
-bool stands_before(uint a, uint b) {
-    float depth_a = depth_of(a);
-    float depth_b = depth_of(b);
+bool stands_before(uint a, uvec4 link_a, uint b, uvec4 link_b) {
+    float depth_a = mean_depth_of(link_a);
+    float depth_b = mean_depth_of(link_b);
     return depth_a < depth_b || (depth_a == depth_b && surfaces[a].z < surfaces[b].z);
 }
 
@@ -77,17 +76,23 @@ bool is_sorted(inout Merge m) {
                 m.q_left = m.run;
                 m.merges++;
             }
+            uvec4 p_link = links[m.p];
+            uvec4 q_link = m.q != NONE ? links[m.q] : uvec4(NONE);
             while (m.is_parted && (m.p_left > 0u || (m.q_left > 0u && m.q != NONE))) {
                 bool take_p = m.p_left > 0u;
                 if (take_p && m.q_left > 0u && m.q != NONE) {
-                    take_p = !stands_before(m.q, m.p);
+                    take_p = !stands_before(m.q, q_link, m.p, p_link);
                 }
                 uint taken = take_p ? m.p : m.q;
+                uint after = take_p ? p_link.x : q_link.x;
+                uvec4 link = after != NONE ? links[after] : uvec4(NONE);
                 if (take_p) {
-                    m.p = links[m.p].x;
+                    m.p = after;
+                    p_link = link;
                     m.p_left--;
                 } else {
-                    m.q = links[m.q].x;
+                    m.q = after;
+                    q_link = link;
                     m.q_left--;
                 }
                 if (m.tail == NONE) {
@@ -119,6 +124,63 @@ bool is_sorted(inout Merge m) {
     return is_done;
 }
 
+// Up to 8 fragments in order; what is not there stands at the end.
+struct Run {
+    vec4 depths[2];
+    uvec4 nodes[2];
+    uvec4 masks[2];
+};
+
+const float NOWHERE_M = 1.0e30;
+const Run NO_RUN = Run(vec4[2](vec4(NOWHERE_M), vec4(NOWHERE_M)), uvec4[2](uvec4(NONE), uvec4(NONE)),
+    uvec4[2](uvec4(0u), uvec4(0u)));
+const uint MOST_OF_RUN = 8u;
+const uint MOST_RUNS = 8u; // of a list that is cut into them; a longer one is merged from its links on
+
+bool has_depth(Run run, float depth) {
+    return any(equal(run.depths[0], vec4(depth))) || any(equal(run.depths[1], vec4(depth)));
+}
+
+// What is farther than the fragment moves on by one.
+void insert(inout Run run, float depth, uint node, uint mask) {
+    bvec4 later = greaterThan(run.depths[0], vec4(depth));
+    bvec4 latest = greaterThan(run.depths[1], vec4(depth));
+    bvec4 moved = bvec4(false, later.xyz);
+    bvec4 moved_last = bvec4(later.w, latest.xyz);
+    vec4 depths = vec4(depth, run.depths[0].xyz);
+    uvec4 nodes = uvec4(node, run.nodes[0].xyz);
+    uvec4 masks = uvec4(mask, run.masks[0].xyz);
+    run.depths[1] = mix(run.depths[1],
+        mix(vec4(depth), vec4(run.depths[0].w, run.depths[1].xyz), moved_last), latest);
+    run.nodes[1] = mix(run.nodes[1],
+        mix(uvec4(node), uvec4(run.nodes[0].w, run.nodes[1].xyz), moved_last), latest);
+    run.masks[1] = mix(run.masks[1],
+        mix(uvec4(mask), uvec4(run.masks[0].w, run.masks[1].xyz), moved_last), latest);
+    run.depths[0] = mix(run.depths[0], mix(vec4(depth), depths, moved), later);
+    run.nodes[0] = mix(run.nodes[0], mix(uvec4(node), nodes, moved), later);
+    run.masks[0] = mix(run.masks[0], mix(uvec4(mask), masks, moved), later);
+}
+
+// The second fragment becomes the first, the first the last.
+void turn(inout Run run) {
+    vec4 depths = run.depths[0];
+    uvec4 nodes = run.nodes[0];
+    uvec4 masks = run.masks[0];
+    run.depths[0] = vec4(depths.yzw, run.depths[1].x);
+    run.nodes[0] = uvec4(nodes.yzw, run.nodes[1].x);
+    run.masks[0] = uvec4(masks.yzw, run.masks[1].x);
+    run.depths[1] = vec4(run.depths[1].yzw, depths.x);
+    run.nodes[1] = uvec4(run.nodes[1].yzw, nodes.x);
+    run.masks[1] = uvec4(run.masks[1].yzw, masks.x);
+}
+
+// Fragments of it between two depths.
+uint count_between(Run run, vec2 extent) {
+    uvec4 counts = uvec4(greaterThan(run.depths[0], vec4(extent.x))) * uvec4(lessThan(run.depths[0], vec4(extent.y)))
+        + uvec4(greaterThan(run.depths[1], vec4(extent.x))) * uvec4(lessThan(run.depths[1], vec4(extent.y)));
+    return counts.x + counts.y + counts.z + counts.w;
+}
+
 const uint MERGING = 0u;
 const uint COVERING = 1u; // the end of the tracing is looked for
 const uint COUNTING = 2u; // of the sections
@@ -141,7 +203,8 @@ void main() {
     float end = frame.yon_m;
     uint cuts = 0u;
     State before = NO_STATE;
-    if (is_carried(SORT, at)) {
+    bool is_begun = is_carried(SORT);
+    if (is_begun) {
         before = state_of(at);
         phase = before.c.x;
         if (phase == MERGING) {
@@ -154,6 +217,57 @@ void main() {
             cuts = before.a.w;
         }
     }
+
+    uint next = is_begun ? NONE : head;
+    uint last = NONE;
+    uint runs = 0u;
+    bool is_moved = false;
+    bool has_equal = false; // depths in a run, of which the triangles are not asked here
+    Run run = NO_RUN;
+    while (next != NONE && runs < MOST_RUNS) {
+        run = NO_RUN;
+        uint count = 0u;
+        float farthest_m = 0.0;
+        while (next != NONE && count < MOST_OF_RUN) {
+            uvec4 link = links[next];
+            float depth = mean_depth_of(link);
+            has_equal = has_equal || has_depth(run, depth);
+            is_moved = is_moved || depth < farthest_m;
+            farthest_m = max(farthest_m, depth);
+            insert(run, depth, next, link.y);
+            next = link.x;
+            count++;
+        }
+        bool is_all = runs == 0u && next == NONE && !has_equal;
+        float end_m = NOWHERE_M;
+        while (count > 0u) {
+            uint node = run.nodes[0].x;
+            head = last == NONE ? node : head;
+            if (is_moved && last != NONE) {
+                links[last].x = node;
+            }
+            if (is_all && covered != 0xffffffffu) {
+                covered |= opacity_of(Color(0u, colors[node].y)) >= 1.0 ? run.masks[0].x : 0u;
+                end_m = run.depths[0].x;
+            }
+            last = node;
+            turn(run);
+            count--;
+        }
+        end = is_all && covered == 0xffffffffu ? min(end, end_m) : end;
+        runs++;
+    }
+    if (is_moved) {
+        links[last].x = next;
+        heads[at] = head;
+    }
+    bool is_one_run = !is_begun && runs <= 1u && next == NONE && !has_equal;
+    if (is_one_run) {
+        phase = COVERING; // which is done
+    } else if (!is_begun) {
+        merge = Merge(NONE, NONE, head, head, 0u, 0u, next == NONE && !has_equal ? MOST_OF_RUN : 1u, 0u, false);
+    }
+
     if (phase == MERGING) {
         if (is_sorted(merge)) {
             head = merge.head;
@@ -163,14 +277,16 @@ void main() {
         }
     }
     if (phase == COVERING) {
-        uint last = f;
+        uint farthest = NONE;
         while (f != NONE && covered != 0xffffffffu) {
             uvec2 link = links[f].xy;
             covered |= opacity_of(Color(0u, colors[f].y)) >= 1.0 ? link.y : 0u;
-            last = f;
+            farthest = f;
             f = link.x;
         }
-        end = covered == 0xffffffffu && last != NONE ? min(end, depth_of(last)) : end;
+        if (covered == 0xffffffffu && farthest != NONE) {
+            end = min(end, mean_depth_of(links[farthest]));
+        }
     }
 
     bool is_done = false;
@@ -190,12 +306,12 @@ void main() {
         if (v == volume_count) {
             if (phase == COVERING) {
                 phase = COUNTING;
-                f = ends > 0u ? head : NONE;
-                cuts = ends;
+                f = ends > 0u && !is_one_run ? head : NONE;
+                cuts = ends + (ends > 0u && is_one_run ? count_between(run, extent) : 0u);
             }
             while (f != NONE) {
                 uvec4 link = links[f];
-                float depth = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
+                float depth = mean_depth_of(link);
                 cuts += uint(depth > extent.x && depth < extent.y);
                 f = link.x;
             }

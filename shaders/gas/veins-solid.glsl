@@ -4,13 +4,14 @@
 #include "gas/density-functions.glsl"
 #include "gas/solid-texture.glsl"
 
-vec3 veined(uint object, vec3 color, vec3 point, vec3 normal, vec3 ray) {
-    int texture_index = objects[object].veins;
+vec3 veined(uint object, vec3 offset_m, vec3 color, vec3 point, vec3 normal, vec3 ray) {
+    uvec4 veins = object_words[6u * object + 5u];
+    int texture_index = int(veins.w);
     if (texture_index < 0) {
         return color;
     }
     float depth = dot(point - frame.eye, frame.forward);
     take_volume(uint(texture_index));
-    float part = mean_density(point - objects[object].offset_m, normal, ray, depth);
-    return mix(color, objects[object].vein_color, part);
+    float part = mean_density(point - offset_m, normal, ray, depth);
+    return mix(color, uintBitsToFloat(veins.xyz), part);
 }

@@ -10,7 +10,7 @@ use crate::papers::layout::{check_block, check_list};
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
     for shader in
-        ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept-one.comp", "gas/resolve-none.comp"]
+        ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept-one.comp", "gas/resolve-none-one.comp"]
     {
         check_block::<FrameBlock>(shader, "frame");
     }
@@ -22,7 +22,7 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<TriangleBlock>("gas/fragments-plain.frag", "Triangles");
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
     check_list::<SectionBlock>("gas/volume-table-functions-kept-one.comp", "Sections");
-    check_block::<CountsBlock>("gas/resolve-none.comp", "counts");
+    check_block::<CountsBlock>("gas/resolve-none-one.comp", "counts");
     check_block::<UnfinishedBlock>("gas/sort.comp", "Unfinished");
     check_block::<CountersBlock>("gas/sort.comp", "Counters");
 }

@@ -45,7 +45,12 @@ impl Resolve {
             ),
         };
         let has_veins = scene.has_veins();
-        let shader = if has_veins { "gas/resolve-solid.comp" } else { "gas/resolve-none.comp" };
+        let shader = match (has_veins, context.parameters.lights.len()) {
+            (false, 1) => "gas/resolve-none-one.comp",
+            (false, _) => "gas/resolve-none-several.comp",
+            (true, 1) => "gas/resolve-solid-one.comp",
+            (true, _) => "gas/resolve-solid-several.comp",
+        };
         let pass = Pass::compute("resolve", "A-buffer", shader);
         let pass = if has_veins { scene.solid_textures(pass) } else { pass };
         let pass = pass

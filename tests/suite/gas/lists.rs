@@ -4,7 +4,7 @@ use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::reference::coverage::{area, cut};
-use fumarole::papers::gas::{Capacity, Gas, Lists, Parameters, Variant};
+use fumarole::papers::gas::{Capacity, Fragment, Gas, Lists, Parameters, Variant};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, Mesh};
 use glam::{DVec2, Vec3};
@@ -197,6 +197,35 @@ fn long_lists_are_sorted() {
             assert_eq!(list.len(), 72);
             let key = |f: &fumarole::papers::gas::Fragment| (f.depth_m[0] + f.depth_m[1], f.object, f.triangle);
             assert!(list.windows(2).all(|w| key(&w[0]) < key(&w[1])), "{list:?}");
+        }
+    });
+}
+
+/// Of every length from 1 to 90 side by side, in the runs that are sorted at once and beyond them, with depths that are equal:
+/// all fragments are there, by depth and then by triangle.
+#[test]
+fn lists_of_every_length_are_sorted() {
+    gpu_test(|device| {
+        let mut random = Random::new(41);
+        let mut depths: Vec<f32> = (0..WIDTH).map(|_| random.range(2.0, 9.0)).collect();
+        for equal in [3, 12, 40, 41, 77] {
+            depths[equal] = depths[equal - 3];
+        }
+        // Each begins in the middle of a column, and goes on to the picture's right.
+        let sheet = |(column, &depth): (usize, &f32)| {
+            let left = column as f64 + 0.5;
+            [(left, -400.0), (600.0, 31.0), (left, 462.0)].map(|(x, y)| unproject(DVec2::new(x, y), depth))
+        };
+        let triangles: Vec<[Vec3; 3]> = depths.iter().enumerate().map(sheet).collect();
+        let objects = [Object { opacity: 0.1, ..object(&triangles) }];
+        for lists in [Lists::Linked, Lists::Tiles] {
+            let parameters = Parameters { lists, ..parameters() };
+            let drawing = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
+            for (pixel, list) in drawing.lists.iter().enumerate() {
+                assert_eq!(list.len(), pixel % WIDTH as usize + 1, "{lists:?}, pixel {pixel}");
+                let key = |f: &Fragment| (f.depth_m[0] + f.depth_m[1], f.triangle);
+                assert!(list.windows(2).all(|w| key(&w[0]) < key(&w[1])), "{lists:?}, pixel {pixel}: {list:?}");
+            }
         }
     });
 }
