@@ -34,10 +34,10 @@ pub fn points(setup: &Setup, is_camera_given: bool) -> Vec<Point<Setup>> {
     cameras.into_iter().flat_map(of).collect()
 }
 
-/// Milliseconds of the passes of these names; none where one was not measured.
+/// Milliseconds of the passes of these names; none without one of them, or where one was not measured.
 fn gpu_ms(run: &Run, names: &[&str]) -> Option<f64> {
     let passes = run.passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
-    passes.map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).sum()
+    passes.map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).reduce(|sum, ms| Some(sum? + ms?))?
 }
 
 /// Counts and times of every row, and its frame beside that of the camera without culling.
