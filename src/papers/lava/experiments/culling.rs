@@ -37,7 +37,7 @@ pub fn points(setup: &Setup, is_camera_given: bool) -> Vec<Point<Setup>> {
 /// Milliseconds of the passes of these names; none without one of them, or where one was not measured.
 fn gpu_ms(run: &Run, names: &[&str]) -> Option<f64> {
     let passes = run.passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
-    passes.map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).reduce(|sum, ms| Some(sum? + ms?))?
+    passes.map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).reduce(|sum, ms| Some(sum? + ms?)).flatten()
 }
 
 /// Counts and times of every row, and its frame beside that of the camera without culling.
