@@ -8,19 +8,18 @@
 
 #include "burning/before-mesh.glsl"
 #include "burning/noise.glsl"
+#include "burning/smoke.glsl"
 
 #ifdef LIGHT_FLAMES
 layout(location = 4) flat in vec3 smoke_light; // of the flames, linear RGB
-
-const float SMOKE_ALBEDO = 0.4;
 #endif
 
 vec4 smoke(vec2 at, float age, float own) {
     float texture_noise = noise(1.6 * at + vec2(47.0 * own, 31.0 * own - 1.2 * age));
     float body = clamp(1.0 - length(at) - 0.7 * (texture_noise - 0.3), 0.0, 1.0);
-    float alpha = 0.3 * body * smoothstep(0.0, 0.2, age) * (1.0 - age);
+    float alpha = smoke_opacity(age) * body;
 #ifdef LIGHT_FLAMES
-    vec3 grey = vec3(0.1) + SMOKE_ALBEDO * smoke_light;
+    vec3 grey = SMOKE_GREY + SMOKE_ALBEDO * smoke_light;
 #else
     // Young smoke is lit by the fire beneath it: by a rule of its age where flames shine on nothing else.
     vec3 grey = mix(vec3(0.11, 0.075, 0.05), vec3(0.1), smoothstep(0.0, 0.5, age));

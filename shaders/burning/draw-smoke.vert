@@ -5,6 +5,7 @@
 // A square for each particle of smoke.
 
 #include "burning/constants.glsl"
+#include "burning/smoke.glsl"
 #include "burning/square.glsl"
 #include "burning/light-{LIGHT}.glsl"
 
@@ -15,8 +16,7 @@ layout(location = 4) flat out vec3 smoke_light; // of the flames, linear RGB
 void main() {
     Particle p = particles[uint(gl_InstanceIndex) + constants.fire_pool];
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
-    // Smoke spreads.
-    place(p, corner, vec2((0.45 + 0.55 * age_of(p)) * (0.75 + 0.25 * p.random.y)));
+    place(p, corner, vec2(smoke_size(age_of(p), p.random.y)));
 #ifdef LIGHT_FLAMES
     smoke_light = scattered(p.position);
 #endif

@@ -10,6 +10,7 @@ layout(local_size_x = 256) in;
 #include "burning/flames.glsl"
 #include "burning/billboards.glsl"
 #include "burning/fire-light.glsl"
+#include "burning/ordered.glsl"
 
 layout(set = 0, binding = 43, std430) readonly buffer Particles {
     Particle particles[]; // fire, then smoke
@@ -27,16 +28,6 @@ shared int lowest[3];
 shared int highest[3];
 shared uint counts[27];
 shared uint sums[162]; // of a cell: place x, y, z, light red, green, blue
-
-// Integers in the order of floats, and back.
-int ordered(float value) {
-    int bits = floatBitsToInt(value);
-    return bits ^ ((bits >> 31) & 0x7fffffff);
-}
-
-float unordered(int value) {
-    return intBitsToFloat(value ^ ((value >> 31) & 0x7fffffff));
-}
 
 // Mean over its square of the light that a flame shows (draw-fire.frag), by its age: quadratics that a test holds
 // against the integral.

@@ -25,6 +25,8 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/puddle-volume.comp", "an atomic: volumes are summed"),
     ("burning/puddle-weights.comp", "atomics: weights are summed"),
     ("burning/puddle.comp", "atomics: volumes are summed"),
+    ("burning/smoke-box.comp", "atomics: the lowest and the highest place are found"),
+    ("burning/smoke-density.comp", "an atomic: densities are summed"),
     ("burning/surface-removal-mark-free.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-parts.comp", "an atomic: removed triangles are counted"),
     ("caustics/depth-profile.comp", "an atomic: levels that hold the receiver are marked"),

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::parameters::{Heat, Look, Material, Parameters, Shading, Variant};
+use super::parameters::{Heat, Look, Material, Parameters, Shading, SmokeAs, Variant};
 
 impl Parameters {
     /// The material of the surface; a texture has none.
@@ -65,6 +65,11 @@ impl Parameters {
     /// True where the picture is made of linear light, which the flames add to.
     pub fn has_linear_light(&self) -> bool {
         self.look == Look::Natural && self.shading == Shading::Lit
+    }
+
+    /// True where smoke is a volume in the light of the flames.
+    pub fn has_smoke_volume(&self) -> bool {
+        self.has_linear_light() && self.smoke_as == SmokeAs::Volume && self.smoke > 0
     }
 
     /// True where triangles are drawn in the order that vertex caches like best: by the natural look, of objects that are

@@ -59,6 +59,23 @@ impl Choice for Heat {
     ];
 }
 
+/// The way that smoke is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SmokeAs {
+    /// A square for each particle.
+    Particles,
+    /// Its density in a grid, which rays march through.
+    Volume,
+}
+
+impl Choice for SmokeAs {
+    const ALL: &'static [SmokeAs] = &[SmokeAs::Particles, SmokeAs::Volume];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("particles", "A square for each particle"),
+        ("volume", "Its density in a grid, which rays march through"),
+    ];
+}
+
 /// The quantity that colours the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {

@@ -8,13 +8,16 @@ use super::buffers::Buffers;
 use super::draw::{Draw, LIGHT};
 use super::flames::Flames;
 use super::parameters::Parameters;
+use super::smoke_volume::SmokeVolume;
 use crate::gpu::{Blend, Buffer, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary, Topology};
 
 /// The pass.
 pub struct DrawFire {
-    /// Smoke, then fire, with their particles: what of the smoke hides fire is in front mostly, and fire shines through. A
-    /// shader each, for devices that run both sides of a branch would pay for both everywhere.
-    steps: [(Pass, u32); 2],
+    /// The smoke's density, where it is drawn as a volume.
+    pub(super) volume: Option<SmokeVolume>,
+    /// Smoke, then fire, with their vertices and instances: what of the smoke hides fire is in front mostly, and fire
+    /// shines through. A shader each, for devices that run both sides of a branch would pay for both everywhere.
+    steps: [(Pass, [u32; 2]); 2],
     /// The picture, or the layer: linear light, and what it leaves of the light behind it.
     pub target: Arc<ImageView>,
 }
@@ -51,23 +54,43 @@ impl DrawFire {
                 .color(&target, load, Blend::Premultiplied)
                 .topology(Topology::TriangleStrip)
         };
-        let smoke = step(&format!("draw-smoke-{light}.vert"), &format!("draw-smoke-{light}.frag"), load);
-        let smoke = smoke.with("constants", &buffers.constants);
-        let smoke = match fire_lights {
-            None => smoke,
-            Some(fire_lights) => smoke.with("FireLights", fire_lights),
+        let volume = fire_lights
+            .filter(|_| parameters.has_smoke_volume())
+            .map(|lights| SmokeVolume::new(shaders, label, parameters.smoke, buffers, flames, lights))
+            .transpose()?;
+        let (smoke, drawn) = match &volume {
+            None => {
+                let smoke = step(&format!("draw-smoke-{light}.vert"), &format!("draw-smoke-{light}.frag"), load);
+                let smoke = smoke.with("constants", &buffers.constants);
+                let lit = fire_lights.into_iter().fold(smoke, |smoke, lights| smoke.with("FireLights", lights));
+                (lit, [4, parameters.smoke])
+            }
+            Some(volume) => {
+                let (vertex, fragment) = ("common/fullscreen.vert", "burning/draw-smoke-volume.frag");
+                let smoke = Pass::graphics("draw-fire", "3.6", vertex, fragment)
+                    .with("view", &draw.view)
+                    .with("billboards", &flames.billboards)
+                    .with("mesh_depth", &draw.depth)
+                    .with("SmokeGrid", &volume.grid)
+                    .with("SmokeCells", &volume.cells)
+                    .color(&target, load, Blend::Premultiplied);
+                (smoke, [3, 1])
+            }
         };
         let fire = step("draw-fire.vert", &format!("draw-fire-{light}.frag"), Load::Keep);
         let [smoke, fire] = Pass::steps([smoke.build(shaders)?, fire.build(shaders)?]);
-        Ok(DrawFire { steps: [(smoke, parameters.smoke), (fire, parameters.fire)], target })
+        Ok(DrawFire { volume, steps: [(smoke, drawn), (fire, [4, parameters.fire])], target })
     }
 
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.steps.iter().try_for_each(|(step, particles)| {
+        if let Some(volume) = &self.volume {
+            volume.record(frame)?;
+        }
+        self.steps.iter().try_for_each(|&(ref step, [vertices, instances])| {
             frame.graphics(step, |draw| {
-                draw.instances(4, *particles);
+                draw.instances(vertices, instances);
             })
         })
     }

@@ -6,7 +6,11 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
+<<<<<<< HEAD
 use super::{chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle};
+=======
+use super::{chunks, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
+>>>>>>> 287422a (wip)
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -83,7 +87,8 @@ impl Parameters {
         let of_look = if_so(collapses, parts::BYTES + falling::BYTES)
             + if_so(has_puddle, puddle::BYTES)
             + if_so(self.has_ash(variant), draw_ground::BYTES)
-            + if_so(has_light, flame_lights::BYTES);
+            + if_so(has_light, flame_lights::BYTES)
+            + if_so(self.has_smoke_volume(), smoke_volume::BYTES);
         // Linear light, and the layer of fire and smoke.
         let [columns, rows] = draw_fire::layer_size(self).map(f64::from);
         let of_light = if has_light { 8.0 * pixels } else { 0.0 };

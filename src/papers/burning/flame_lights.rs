@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::Vec3;
 
+use super::Burning;
 use super::buffers::Buffers;
 use super::flames::Flames;
 use crate::gpu::transfer::upload;
@@ -72,5 +73,12 @@ impl FlameLights {
         frame.compute(&self.pass, |dispatch| {
             dispatch.threads(1, 1, 1);
         })
+    }
+}
+
+impl Burning {
+    /// [`FireLight`]s, of a picture of linear light.
+    pub fn fire_lights(&self) -> Option<&Arc<Buffer>> {
+        self.fire_lights.as_ref()
     }
 }

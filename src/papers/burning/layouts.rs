@@ -7,6 +7,7 @@ use super::flames::{BillboardsBlock, Group, Particle};
 use super::materials::{Appearance, BlockLevels};
 use super::parts::{Part, Progress};
 use super::puddle::Film;
+use super::smoke_volume::SmokeGrid;
 use super::texture::TextureLevel;
 use crate::papers::layout::{block, check_block, check_list};
 
@@ -32,6 +33,8 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<Part>("burning/falling.comp", "Parts");
     let films = block("burning/puddle.comp", "Films");
     assert_eq!(films.members[0].block.as_ref().expect("it is a structure").check_host::<Film>(), Ok(()));
+    let grids = block("burning/smoke-box.comp", "SmokeGrid");
+    assert_eq!(grids.members[0].block.as_ref().expect("it is a structure").check_host::<SmokeGrid>(), Ok(()));
     let searching = block("burning/parts-number.comp", "Searching");
     let progress = searching.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(progress.check_host::<Progress>(), Ok(()));

@@ -9,7 +9,7 @@
 //! each frame:
 //!     └─► vertex-mapping ─► surface-removal ─► normals ─► (flame-lights) ─► draw ─► (draw-ground ─► draw-puddle)
 //!     ┌───────────────────────────────────────────────────────────────────────────────────────────┘
-//!     └─► draw-fire ─► (tone)
+//!     └─► (smoke-volume) ─► draw-fire ─► (tone)
 //! ```
 //!
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the
@@ -51,6 +51,7 @@ mod puddle;
 pub mod reference;
 mod refinement;
 pub mod setup;
+mod smoke_volume;
 mod surface_removal;
 mod targets;
 mod texture;
@@ -96,6 +97,7 @@ pub use self::framing::seen_from;
 pub use self::parameters::{Heat, Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::parts::{MOST_PARTS, Part, Parts, SEARCH_TICKS};
 pub use self::puddle::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH};
+pub use self::smoke_volume::{SMOKE_CELLS, SmokeGrid, SmokeVolume};
 pub use self::texture::{Level, Texture, with_levels};
 pub use crate::papers::tone::Tone;
 
@@ -357,11 +359,6 @@ impl Burning {
     /// Fire and smoke, where there is any.
     pub fn flames(&self) -> Option<&Flames> {
         self.flames.as_ref()
-    }
-
-    /// [`FireLight`]s, of a picture of linear light.
-    pub fn fire_lights(&self) -> Option<&Arc<Buffer>> {
-        self.fire_lights.as_ref()
     }
 
     /// Sets the camera, the light of the flames, the exposure and the tone of the next frames; false where another level

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-pub use super::choices::{Heat, Look, Material, Shading};
+pub use super::choices::{Heat, Look, Material, Shading, SmokeAs};
 use super::framing::seen_from;
 use super::level_of_detail::LevelOfDetail;
 use super::materials::Materials;
@@ -141,6 +141,8 @@ pub struct Parameters {
     pub fire_light: f32,
     /// Pixels of the picture along a side of a pixel of the layer that holds fire and smoke, of the natural look.
     pub fire_scale: u32,
+    /// The way that smoke is drawn, of the natural look.
+    pub smoke_as: SmokeAs,
     /// Factor of the picture's light, of the natural look.
     pub exposure: f32,
     /// Fate of light that is brighter than the display, of the natural look.
@@ -214,6 +216,7 @@ impl Default for Parameters {
             particle_radius: 0.02,
             fire_light: 4.0,
             fire_scale: 2,
+            smoke_as: SmokeAs::Particles,
             exposure: 1.0,
             tone: Tone::Shoulder,
             level_of_detail: None,
@@ -355,6 +358,8 @@ impl Parameters {
             row("fire-light", p!(fire_light), FACTOR, "Factor of the light of the flames, of the natural look", "")
                 .cost(Cost::Constants),
             row("fire-scale", p!(fire_scale), R::from(1.0).to(8.0), FIRE_SCALE, "").unit("pixels"),
+            row("smoke-as", p!(smoke_as), any, "The way that smoke is drawn, of the natural look", "")
+                .cost(Cost::Pipelines),
             row("exposure", p!(exposure), FACTOR, "Factor of the picture's light, of the natural look", "")
                 .cost(Cost::Constants),
             row("tone", p!(tone), any, "Fate of what is brighter than the display, of the natural look", "")

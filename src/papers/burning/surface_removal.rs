@@ -40,7 +40,7 @@ enum Steps {
     /// The marks of what is consumed.
     Marking([[Pass; 4]; 2]),
     /// The search for what hangs together.
-    Connecting(Connection, [[Pass; 10]; 2]),
+    Connecting(Box<(Connection, [[Pass; 10]; 2])>),
 }
 
 /// The steps of the pass.
@@ -113,13 +113,13 @@ impl SurfaceRemoval {
         let write = over_all(write).with("Corners", &buffers.corners).with("Stream", &buffers.stream).build(shaders)?;
         let compaction = [count, scan, write];
         let steps = match connection {
-            Some((connection, steps)) => Steps::Connecting(
-                connection,
-                steps.map(|[reset, choice, unite, flatten, check, pieces, leave]| {
+            Some((connection, steps)) => {
+                let steps = steps.map(|[reset, choice, unite, flatten, check, pieces, leave]| {
                     let [count, scan, write] = compaction.clone();
                     Pass::steps([reset, choice, unite, flatten, check, pieces, leave, count, scan, write])
-                }),
-            ),
+                });
+                Steps::Connecting(Box::new((connection, steps)))
+            }
             None => Steps::Marking(marks(shaders, buffers, fallen)?.map(|mark| {
                 let [count, scan, write] = compaction.clone();
                 Pass::steps([mark, count, scan, write])
@@ -143,7 +143,10 @@ impl SurfaceRemoval {
         }
         let newest = (tick % 2) as usize;
         match &self.steps {
-            Steps::Connecting(connection, steps) => connection.record(frame, &steps[newest], tick),
+            Steps::Connecting(connecting) => {
+                let (connection, steps) = &**connecting;
+                connection.record(frame, &steps[newest], tick)
+            }
             Steps::Marking(steps) => frame.compute(&steps[newest][0], |dispatch| {
                 dispatch.groups_indirect();
             }),
@@ -160,8 +163,8 @@ impl SurfaceRemoval {
                 let [_, count, scan, write] = &steps[tick];
                 (count, scan, write)
             }
-            Steps::Connecting(_, steps) => {
-                let [.., count, scan, write] = &steps[tick];
+            Steps::Connecting(connecting) => {
+                let [.., count, scan, write] = &connecting.1[tick];
                 (count, scan, write)
             }
         };
@@ -185,7 +188,7 @@ impl Burning {
     /// The search that keeps an object in one, of an object that is kept so.
     pub fn connection(&self) -> Option<&Connection> {
         match &self.surface_removal.steps {
-            Steps::Connecting(connection, _) => Some(connection),
+            Steps::Connecting(connecting) => Some(&connecting.0),
             Steps::Marking(_) => None,
         }
     }

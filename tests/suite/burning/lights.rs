@@ -21,7 +21,7 @@ use super::fire::{Fire, ball};
 use crate::common::gpu_test;
 
 /// A fire of few flames, well alight.
-fn burning() -> Parameters {
+pub fn burning() -> Parameters {
     Parameters {
         width: 96,
         height: 72,
@@ -35,20 +35,20 @@ fn burning() -> Parameters {
     }
 }
 
-fn first_picture(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Fire {
+pub fn first_picture(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Fire {
     let mut fire = Fire::new(device, variant, parameters, mesh);
     fire.frame(0);
     fire
 }
 
-fn bytes(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<u8> {
+pub fn bytes(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<u8> {
     let targets = fire.paper.targets();
     let target = targets.iter().find(|target| target.name == name).expect("the target");
     let Resource::Image(view) = &target.resource else { panic!("{name} is no image") };
     read_image(device, view).unwrap()
 }
 
-fn image(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<DVec4> {
+pub fn image(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<DVec4> {
     let halves: Vec<f16> = bytemuck::pod_collect_to_vec(&bytes(device, fire, name));
     let texel = |t: &[f16]| DVec4::new(t[0].into(), t[1].into(), t[2].into(), t[3].into());
     halves.chunks_exact(4).map(texel).collect()

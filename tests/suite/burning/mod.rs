@@ -17,6 +17,7 @@ mod puddle;
 mod refinement;
 mod refusals;
 mod registries;
+mod smoke_volume;
 mod solid;
 mod spreading;
 mod textures;

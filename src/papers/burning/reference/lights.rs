@@ -19,13 +19,13 @@ pub struct Light {
     pub intensity: DVec3,
 }
 
-fn smoothstep(from: f64, to: f64, at: f64) -> f64 {
+pub(super) fn smoothstep(from: f64, to: f64, at: f64) -> f64 {
     let t = ((at - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
 /// The noise of flames: random values at whole places, blended by cubics.
-fn noise(at: DVec2) -> f64 {
+pub(super) fn noise(at: DVec2) -> f64 {
     let cell = at.floor();
     let fade = [at.x - cell.x, at.y - cell.y].map(|t| smoothstep(0.0, 1.0, t));
     let corner = |step: IVec2| {

@@ -19,6 +19,7 @@ mod model;
 mod normals;
 pub mod refinement;
 mod removal;
+pub mod smoke;
 pub mod solid;
 
 use glam::DVec3;
