@@ -30,7 +30,6 @@ pub fn write_tiles(
 /// Rows of one level that no tile has yet.
 struct Band<T> {
     bound: Bound,
-    shift: u32,
     first_row: u32,
     texels: Vec<T>,
 }
@@ -50,8 +49,8 @@ impl<'a, T: Texel, W: Write + Seek> Writer<'a, T, W> {
             Interpolation::Bilinear => &[Bound::Highest],
             Interpolation::Bicubic => &[Bound::Highest, Bound::Lowest],
         };
-        let band = |bound, shift| Band { bound, shift, first_row: 0, texels: Vec::new() };
-        let chain = |&bound: &Bound| (0..=table.shape().top).map(|shift| band(bound, shift)).collect();
+        let band = |bound| Band { bound, first_row: 0, texels: Vec::new() };
+        let chain = |&bound: &Bound| (0..=table.shape().top).map(|_| band(bound)).collect();
         let chains = bounds.iter().map(chain).collect();
         Writer { out, first, table, chains, checksums: vec![0; table.count()] }
     }
