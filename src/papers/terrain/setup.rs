@@ -50,6 +50,8 @@ pub struct Setup {
     pub voids: Voids,
     /// Maps are not held: their tiles are read from files that are made once.
     pub streams: bool,
+    /// Overview of GeoTIFF maps in place of their data, from 1, the finest, on; 0 for the data.
+    pub overview: u32,
     /// Samples a side of the synthetic volcano.
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
@@ -74,6 +76,7 @@ impl Default for Setup {
             drape: None,
             voids: Voids::Fill,
             streams: false,
+            overview: 0,
             resolution: HeightMapSource::VOLCANO_SIDE,
             spacing_m: None,
             exaggeration: 1.0,
@@ -182,7 +185,7 @@ impl Setup {
                 self.check_host_memory()?;
                 volcano(self.resolution, self.seed)?
             }
-            other => other.load()?,
+            other => other.load_overview(self.overview)?,
         };
         if let Voids::Level(_) = self.voids {
             map = map.with_voids(self.voids, 0.0)?;
@@ -370,6 +373,10 @@ impl Study for Setup {
                      base is seen",
                 )
                 .cost(Cost::Buffers),
+            Parameter::new("overview", field!(Setup.overview))
+                .range(Range::from(0.0).to(31.0))
+                .help("Overview of GeoTIFF maps in place of the data: 1 the finest that they have, 0 the data")
+                .cost(Cost::Buffers),
             Parameter::new("stream", field!(Setup.streams))
                 .help(
                     "Hold no map: read tiles from a file of them, made once in the cache of the user's folder; for variant \
@@ -446,6 +453,10 @@ impl Study for Setup {
             let resolution = self.resolution;
             let reason = "only the synthetic volcano has any size; name `map` volcano";
             return Err(Error::Input(format!("`resolution` {resolution}: {reason}")));
+        }
+        if self.overview > 0 && self.maps.contains(&HeightMapSource::Volcano) {
+            let reason = "only a GeoTIFF has any, and the synthetic volcano is none; name another `map`";
+            return Err(Error::Input(format!("`overview` {}: {reason}", self.overview)));
         }
         Ok(())
     }

@@ -49,10 +49,13 @@ fn open(setup: &Setup, source: &HeightMapSource) -> Result<TileFile, Error> {
 
 /// All that the tiles of a map are made of.
 fn key(setup: &Setup, source: &HeightMapSource) -> Result<String, Error> {
-    let Setup { parameters, voids, resolution, spacing_m, exaggeration, seed, .. } = setup;
+    let Setup { parameters, voids, resolution, spacing_m, exaggeration, seed, overview, .. } = setup;
     let contents = match source.path() {
         None => format!("{source} {resolution} {seed}"),
-        Some(path) => source_sha256(path).map_err(|error| unreadable(path, error))?,
+        Some(path) => {
+            let contents = source_sha256(path).map_err(|error| unreadable(path, error))?;
+            format!("{contents} {overview}")
+        }
     };
     let level_m = if *voids == Voids::Hole { parameters.base_level_m } else { None };
     let (voids, interpolation) = (voids.text(), parameters.interpolation);
@@ -64,15 +67,17 @@ fn unreadable(path: &Path, source: io::Error) -> Error {
     crate::scene::Error::Read { path: path.to_owned(), source }.into()
 }
 
-/// The samples, row by row: of the synthetic volcano as it is made, of a file from the map that it holds.
+/// The samples, row by row: of the synthetic volcano as it is made, of a GeoTIFF without voids as it is read, else of the whole map.
 fn rows(setup: &Setup, source: &HeightMapSource) -> Result<RowSource, Error> {
-    // Factors of heights change the steps of a map, and no sample.
-    if *source == HeightMapSource::Volcano {
-        let rows = RowSource::volcano(setup.resolution, setup.seed)?;
-        let rows = match setup.spacing_m {
-            Some(spacing_m) => rows.with_spacing_m(DVec2::splat(spacing_m.into()))?,
-            None => rows,
-        };
+    let rows = match source.path() {
+        None if *source == HeightMapSource::Volcano => Some(RowSource::volcano(setup.resolution, setup.seed)?),
+        None => None,
+        Some(path) => RowSource::geotiff(path, setup.overview)?,
+    };
+    if let Some(mut rows) = rows {
+        if let Some(spacing_m) = setup.spacing_m {
+            rows = rows.with_spacing_m(DVec2::splat(spacing_m.into()))?;
+        }
         return Ok(rows.with_exaggeration(setup.exaggeration)?);
     }
     let mut map = setup.load_map(source)?;

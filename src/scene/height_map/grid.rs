@@ -1,6 +1,7 @@
 use super::map::check_size;
 use super::void_samples::Watch;
 use super::{Coordinates, Geographic, HeightMap, Samples, voids};
+use crate::scene::Error;
 use crate::scene::error::{Fault, Place};
 use glam::DVec2;
 
@@ -56,8 +57,7 @@ impl<T: Copy + Into<f64>> Grid<T> {
                 (low, high) = (low.min(value), high.max(value));
                 watch.see(value);
             } else {
-                let place = format!("row {}, column {}", index / width, index % width);
-                return Err(Fault::new(Place::Part(place), format!("its height is {value}, not a finite number")));
+                return Err(not_finite(index / width, index % width, value));
             }
         }
         if void_count == self.values.len() {
@@ -67,8 +67,7 @@ impl<T: Copy + Into<f64>> Grid<T> {
         // A map has at most 2^32 samples.
         let indices = self.values.iter().enumerate().filter(|(_, value)| is_void((**value).into(), no_data));
         void_places.extend(indices.map(|(index, _)| index as u32));
-        let fits = self.integral && high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT;
-        let samples = if fits {
+        let samples = if self.integral && fits_steps(low, high) {
             // The void's own value may lie anywhere; the conversion saturates.
             let values = self.values.into_iter().map(|value| (value.into() - low) as u16).collect();
             Samples::Steps { values: voids::fill_steps(values, width, &void_places), origin_m: low as f32, step_m: 1.0 }
@@ -76,26 +75,41 @@ impl<T: Copy + Into<f64>> Grid<T> {
             let heights = self.values.into_iter().map(|value| value.into() as f32).collect();
             Samples::Float(voids::fill(heights, width, &void_places))
         };
-        let map = HeightMap::new(self.width, self.height, samples)
-            .and_then(|map| match self.placement {
-                Placement::Unknown => Ok(map),
-                Placement::Metres(spacing_m, coordinates) => {
-                    map.with_coordinates(coordinates).with_spacing_m(spacing_m)
-                }
-                Placement::Degrees(place) => {
-                    let spacing_m = place.spacing_m(map.height());
-                    map.with_geographic(place).with_spacing_m(spacing_m)
-                }
-            })
-            .map_err(|error| Fault::foreign(Place::Whole, &error))?;
+        let map = HeightMap::new(self.width, self.height, samples).and_then(|map| self.placement.place(map));
+        let map = map.map_err(|error| Fault::foreign(Place::Whole, &error))?;
         Ok(map.with_void_samples(&void_places).with_suspect(watch.suspect()))
     }
+}
+
+impl Placement {
+    /// The map at its place.
+    pub(super) fn place(self, map: HeightMap) -> Result<HeightMap, Error> {
+        match self {
+            Placement::Unknown => Ok(map),
+            Placement::Metres(spacing_m, coordinates) => map.with_coordinates(coordinates).with_spacing_m(spacing_m),
+            Placement::Degrees(place) => {
+                let spacing_m = place.spacing_m(map.height());
+                map.with_geographic(place).with_spacing_m(spacing_m)
+            }
+        }
+    }
+}
+
+/// True where whole numbers between these are 16-bit steps of 1 m.
+pub(super) fn fits_steps(low: f64, high: f64) -> bool {
+    high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT
+}
+
+/// The fault of a sample that is neither void nor a height.
+pub(super) fn not_finite(row: usize, column: usize, value: f64) -> Fault {
+    let place = format!("row {row}, column {column}");
+    Fault::new(Place::Part(place), format!("its height is {value}, not a finite number"))
 }
 
 /// True when a value is the one that stands for no height.
 ///
 /// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree roughly only.
-fn is_void(value: f64, no_data: Option<f64>) -> bool {
+pub(super) fn is_void(value: f64, no_data: Option<f64>) -> bool {
     let Some(no_data) = no_data else { return false };
     let huge = no_data.abs() > 1e30;
     value == no_data

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use glam::DVec2;
 
+use super::formats::GeoTiffRows;
 use super::slope::SlopeMeter;
 use super::volcano::VolcanoRows;
 use super::{HeightMap, Samples};
@@ -27,12 +28,15 @@ pub enum Rows<'a> {
 pub struct RowSource {
     /// All but range and slope, which follow from the samples.
     map: HeightMap,
+    /// Factor of heights in metres; steps have it in their own.
+    factor: f32,
     source: Source,
 }
 
 enum Source {
     Map(Box<HeightMap>),
     Volcano(VolcanoRows),
+    GeoTiff(GeoTiffRows),
 }
 
 impl RowSource {
@@ -42,7 +46,7 @@ impl RowSource {
     /// None that a map has.
     pub fn of(map: HeightMap) -> Result<Self, Error> {
         let bare = map.clone().without_samples(map.range_m(), map.slope())?;
-        Ok(RowSource { map: bare, source: Source::Map(Box::new(map)) })
+        Ok(RowSource { map: bare, factor: 1.0, source: Source::Map(Box::new(map)) })
     }
 
     /// [`volcano()`](super::volcano()), of which a few rows are held.
@@ -52,7 +56,17 @@ impl RowSource {
     pub fn volcano(side: u32, seed: u64) -> Result<Self, Error> {
         super::map::check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
         let rows = VolcanoRows::new(side, seed);
-        Ok(RowSource { map: rows.map()?, source: Source::Volcano(rows) })
+        Ok(RowSource { map: rows.map()?, factor: 1.0, source: Source::Volcano(rows) })
+    }
+
+    /// A GeoTIFF, or its overview of a number from 1 on, of which a row of tiles or a strip is held; none of another file, and of one
+    /// with voids, which are filled from all their neighbours.
+    ///
+    /// # Errors
+    /// As [`HeightMapSource::load_overview`](super::HeightMapSource::load_overview).
+    pub fn geotiff(path: &Path, overview: u32) -> Result<Option<Self>, Error> {
+        let Some(rows) = GeoTiffRows::survey(path, overview)? else { return Ok(None) };
+        Ok(Some(RowSource { map: rows.map()?, factor: 1.0, source: Source::GeoTiff(rows) }))
     }
 
     /// As [`HeightMap::with_spacing_m`], before the rows are read.
@@ -63,12 +77,12 @@ impl RowSource {
         Ok(RowSource { map: self.map.with_spacing_m(spacing_m)?, ..self })
     }
 
-    /// As [`HeightMap::with_exaggeration`] of a map of steps, before the rows are read.
+    /// As [`HeightMap::with_exaggeration`], before the rows are read; not of a map that is held.
     ///
     /// # Errors
     /// A factor that is not finite and positive, or one that makes a height infinite.
     pub fn with_exaggeration(self, factor: f32) -> Result<Self, Error> {
-        Ok(RowSource { map: self.map.with_exaggeration(factor)?, ..self })
+        Ok(RowSource { map: self.map.with_exaggeration(factor)?, factor: self.factor * factor, ..self })
     }
 
     /// The map; its range and slope are not known yet.
@@ -118,6 +132,7 @@ impl RowSource {
                 }
                 goes_on
             }
+            Source::GeoTiff(picture) => picture.read(self.factor, &mut see)?,
         };
         if !goes_on {
             return Ok(None);
@@ -125,7 +140,9 @@ impl RowSource {
         match self.source {
             // Its range leaves out holes.
             Source::Map(_) => Ok(Some(self.map)),
-            Source::Volcano(_) => self.map.without_samples(meter.range_m(), meter.slope.slope()).map(Some),
+            Source::Volcano(_) | Source::GeoTiff(_) => {
+                self.map.without_samples(meter.range_m(), meter.slope.slope()).map(Some)
+            }
         }
     }
 }

@@ -40,7 +40,21 @@ impl HeightMapSource {
             Self::Volcano => volcano(Self::VOLCANO_SIDE, 1),
             Self::MaungaWhau => formats::maunga_whau(),
             Self::Jacksboro => formats::jacksboro(),
-            Self::File(path) => formats::load(path),
+            Self::File(path) => formats::load(path, 0),
+        }
+    }
+
+    /// An overview of a GeoTIFF in place of its data, 1 the finest; 0 is the data, as any source has them.
+    ///
+    /// # Errors
+    /// As [`Self::load`]; an overview that the source does not have.
+    pub fn load_overview(&self, overview: u32) -> Result<HeightMap, Error> {
+        match self {
+            Self::File(path) => formats::load(path, overview),
+            _ if overview == 0 => self.load(),
+            _ => Err(Error::HeightMap {
+                reason: format!("`overview` {overview}: only a GeoTIFF has any, and {self} is none"),
+            }),
         }
     }
 }

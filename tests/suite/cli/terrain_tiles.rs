@@ -138,6 +138,16 @@ fn streamed_maps_come_from_a_file_that_is_made_once() {
     assert_eq!(kept().len(), 2);
 }
 
+/// Only a GeoTIFF has overviews, and those that it has.
+#[test]
+fn overviews_are_those_of_a_geotiff() {
+    let jacksboro = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/maps/jacksboro.tif");
+    let render = |options: &str| small(&format!("render --quiet --image x.png --overview 1 {options}")).run();
+    render("").refused(2, &["--overview 1", "only a GeoTIFF", "--map"]);
+    render("--map maunga-whau").refused(2, &["--overview 1", "only a GeoTIFF", "maunga-whau"]);
+    render(&format!("--map {jacksboro}")).refused(2, &["jacksboro.tif", "it has 0 overviews"]);
+}
+
 /// What needs the samples themselves is refused.
 #[test]
 fn what_needs_samples_is_not_streamed() {

@@ -12,20 +12,51 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 /// The largest map in 64 bits a sample.
-const MAX_BYTES: usize = 8 << 28;
+pub(super) const MAX_BYTES: usize = 8 << 28;
 /// Tables of strips or tiles.
 const MAX_TAG_BYTES: usize = 16 << 20;
 const GDAL_METADATA: Tag = Tag::Unknown(42_112);
 const GEO_DOUBLE_PARAMETERS: Tag = Tag::Unknown(34_736);
 
-/// Reads the first picture of a TIFF or BigTIFF, in strips or tiles, with the tags of GeoTIFF and GDAL where they are
-/// there.
-pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMap, Fault> {
-    let mut limits = Limits::default();
-    limits.decoding_buffer_size = MAX_BYTES;
-    limits.intermediate_buffer_size = MAX_BYTES;
-    limits.ifd_value_size = MAX_TAG_BYTES;
-    let mut decoder = Decoder::new(input).map_err(foreign)?.with_limits(limits);
+/// A picture of a TIFF or BigTIFF, with what the tags of GeoTIFF and GDAL say of it.
+pub(super) struct Picture<R: Read + Seek> {
+    pub(super) decoder: Decoder<R>,
+    pub(super) bits: u8,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) no_data: Option<f64>,
+    pub(super) placement: Placement,
+}
+
+impl<R: Read + Seek> Picture<R> {
+    /// The first picture, or the overview of a number from 1 on, which has its tags.
+    pub(super) fn open(size_bytes: u64, input: R, overview: u32) -> Result<Self, Fault> {
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = MAX_BYTES;
+        limits.intermediate_buffer_size = MAX_BYTES;
+        limits.ifd_value_size = MAX_TAG_BYTES;
+        let mut decoder = Decoder::new(input).map_err(foreign)?.with_limits(limits);
+        let whole = decoder.dimensions().map_err(foreign)?;
+        if overview == 0 {
+            check_shape(&mut decoder, size_bytes)?;
+        }
+        let mut tags = Tags { decoder: &mut decoder, size_bytes };
+        tags.refuse_scaled_heights()?;
+        let (no_data, coordinates) = (tags.no_data()?, tags.coordinates(whole)?);
+        if overview > 0 {
+            find_overview(&mut decoder, overview)?;
+        }
+        let ((width, height), bits) = check_shape(&mut decoder, size_bytes)?;
+        let placement = match coordinates {
+            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed(unit),
+            None => Placement::Unknown,
+        };
+        Ok(Picture { decoder, bits, width, height, no_data, placement })
+    }
+}
+
+/// Columns, rows and bits of a picture that can be a height map.
+fn check_shape(decoder: &mut Decoder<impl Read + Seek>, size_bytes: u64) -> Result<((u32, u32), u8), Fault> {
     let (width, height) = decoder.dimensions().map_err(foreign)?;
     check_size(width.into(), height.into()).map_err(|reason| fault("ImageWidth, ImageLength", reason))?;
     let ColorType::Gray(bits) = decoder.colortype().map_err(foreign)? else {
@@ -33,9 +64,29 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMa
     };
     check_compressed(size_bytes, (width, height), bits.into())
         .map_err(|reason| fault("ImageWidth, ImageLength, BitsPerSample", reason))?;
-    let mut tags = Tags { decoder: &mut decoder, size_bytes };
-    tags.refuse_scaled_heights()?;
-    let (no_data, placement) = (tags.no_data()?, tags.placement(width, height)?);
+    Ok(((width, height), bits))
+}
+
+/// Moves on to the picture of an overview, from 1 on.
+fn find_overview(decoder: &mut Decoder<impl Read + Seek>, overview: u32) -> Result<(), Fault> {
+    /// Bits of the tag: a smaller version of another picture, and a mask.
+    const SMALLER: u32 = 1;
+    const MASK: u32 = 4;
+    let mut found = 0;
+    while decoder.more_images() {
+        decoder.next_image().map_err(foreign)?;
+        let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).map_err(foreign)?.unwrap_or(0);
+        found += u32::from(kind & SMALLER != 0 && kind & MASK == 0);
+        if found == overview {
+            return Ok(());
+        }
+    }
+    Err(fault("NewSubfileType", format!("it has {found} overviews; `overview` takes one of them, or 0 for the data")))
+}
+
+/// Reads the first picture, or an overview, in strips or tiles.
+pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> Result<HeightMap, Fault> {
+    let Picture { mut decoder, bits, width, height, no_data, placement } = Picture::open(size_bytes, input, overview)?;
     let source = Source { width, height, no_data, placement };
     let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
     if raw_bytes > MAX_BYTES as u64 {
@@ -124,7 +175,8 @@ impl<R: Read + Seek> Tags<'_, R> {
         Ok(())
     }
 
-    fn placement(&mut self, width: u32, height: u32) -> Result<Placement, Fault> {
+    /// Where the samples of a picture of so many columns and rows lie, and the unit of that.
+    fn coordinates(&mut self, (width, height): (u32, u32)) -> Result<Option<(MapCoordinates, Option<Unit>)>, Fault> {
         let keys = self.keys()?;
         // A tie point names the sample's corner, or with PixelIsPoint its centre.
         let offset = if keys.raster_type == Some(2) { 0.0 } else { 0.5 };
@@ -141,14 +193,14 @@ impl<R: Read + Seek> Tags<'_, R> {
             }
             (Some(DVec2::new(matrix[3], matrix[7])), DVec2::new(matrix[0], -matrix[5]))
         } else {
-            return Ok(Placement::Unknown);
+            return Ok(None);
         };
         if !(step.is_finite() && step.min_element() > 0.0) {
             let reason = format!("it makes steps of {} and {}; both have to be positive", step.x, step.y);
             return Err(fault("ModelPixelScale", reason));
         }
         let north_west = corner.map(|corner| corner + DVec2::new(step.x, -step.y) * offset);
-        Ok(MapCoordinates { north_west, step, width, height }.placed(keys.unit))
+        Ok(Some((MapCoordinates { north_west, step, width, height }, keys.unit)))
     }
 
     /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the
@@ -214,10 +266,10 @@ fn part(tag: &str) -> Place {
     Place::Part(tag.to_owned())
 }
 
-fn fault(tag: &str, reason: impl Into<String>) -> Fault {
+pub(super) fn fault(tag: &str, reason: impl Into<String>) -> Fault {
     Fault::new(part(tag), reason)
 }
 
-fn foreign(error: tiff::TiffError) -> Fault {
+pub(super) fn foreign(error: tiff::TiffError) -> Fault {
     Fault::foreign(Place::Whole, &error)
 }

@@ -155,7 +155,7 @@ mod tests {
         tile(folder.path(), "n46e008.HGT", 46, 8, |row, column, h| if column == 0 && row < 600 { VOID } else { h });
         tile(folder.path(), "N45E007.hgt", 45, 7, |_, _, h| h);
         fs::write(folder.path().join("README.txt"), "of no account").unwrap();
-        let map = super::super::load(folder.path()).unwrap();
+        let map = super::super::load(folder.path(), 0).unwrap();
         assert_eq!((map.width(), map.height()), (2_401, 2_401));
         let place = map.geographic().unwrap();
         assert_eq!((place.west_deg, place.north_deg, place.step_deg), (7.0, 47.0, DVec2::splat(1.0 / 1_200.0)));

@@ -4,12 +4,14 @@
 mod ascii_grid;
 mod esri;
 mod geotiff;
+mod geotiff_rows;
 mod hgt;
 mod hgt_folder;
 mod placement;
 mod png;
 pub(in crate::scene) mod vrt;
 
+pub(super) use self::geotiff_rows::GeoTiffRows;
 use super::HeightMap;
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::{Error, file};
@@ -24,7 +26,12 @@ const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 
 /// Reads the height map at `path`: a folder of SRTM tiles, or a file by its ending, in either case, or by its content if that is
 /// a TIFF or a PNG.
-pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
+///
+/// `overview` is 0, or the number of an overview of a TIFF.
+pub(super) fn load(path: &Path, overview: u32) -> Result<HeightMap, Error> {
+    if overview > 0 {
+        return tiff_overview(path, overview);
+    }
     if path.is_dir() {
         return hgt_folder::load(path);
     }
@@ -46,13 +53,11 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
             ascii_grid::parse(size_bytes, BufReader::new(file), projection)
         }
         _ => {
-            let mut magic = Vec::new();
-            let read = file.by_ref().take(8).read_to_end(&mut magic).and_then(|_| file.rewind());
-            read.map_err(|source| Error::Read { path: path.to_owned(), source })?;
+            let magic = magic(&mut file, path)?;
             if magic == PNG_MAGIC {
                 png::parse(size_bytes, BufReader::new(file))
-            } else if TIFF_MAGIC.iter().any(|known| magic.starts_with(known)) {
-                geotiff::parse(size_bytes, BufReader::new(file))
+            } else if is_tiff(&magic) {
+                geotiff::parse(size_bytes, BufReader::new(file), 0)
             } else if matches!(ending.as_str(), "tif" | "tiff" | "png") {
                 Err(Fault::new(Place::Byte(0), "its content is neither TIFF nor PNG; it is damaged or something else"))
             } else {
@@ -62,6 +67,35 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
         }
     };
     parsed.map_err(|fault| malformed(path, fault))
+}
+
+/// An overview of a TIFF, from 1 on.
+fn tiff_overview(path: &Path, overview: u32) -> Result<HeightMap, Error> {
+    let Some((file, size_bytes)) = open_tiff(path)? else {
+        let reason = format!("`overview` {overview}: only a GeoTIFF has any, and {} is none", path.display());
+        return Err(Error::HeightMap { reason });
+    };
+    geotiff::parse(size_bytes, BufReader::new(file), overview).map_err(|fault| malformed(path, fault))
+}
+
+/// The file and its size, if it is a TIFF by its content.
+fn open_tiff(path: &Path) -> Result<Option<(File, u64)>, Error> {
+    if path.is_dir() {
+        return Ok(None);
+    }
+    let (mut file, size_bytes) = file::open(path, Asset::HeightMap)?;
+    Ok(is_tiff(&magic(&mut file, path)?).then_some((file, size_bytes)))
+}
+
+fn is_tiff(magic: &[u8]) -> bool {
+    TIFF_MAGIC.iter().any(|known| magic.starts_with(known))
+}
+
+/// The first bytes of a file, which is then read from its start.
+fn magic(file: &mut File, path: &Path) -> Result<Vec<u8>, Error> {
+    let mut magic = Vec::new();
+    let read = file.by_ref().take(8).read_to_end(&mut magic).and_then(|_| file.rewind());
+    read.map(|()| magic).map_err(|source| Error::Read { path: path.to_owned(), source })
 }
 
 /// The volcano that the program carries.
@@ -74,7 +108,7 @@ pub(super) fn maunga_whau() -> Result<HeightMap, Error> {
 /// The mountains that the program carries.
 pub(super) fn jacksboro() -> Result<HeightMap, Error> {
     let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/maps/jacksboro.tif"));
-    geotiff::parse(bytes.len() as u64, Cursor::new(bytes.as_slice()))
+    geotiff::parse(bytes.len() as u64, Cursor::new(bytes.as_slice()), 0)
         .map_err(|fault| malformed(Path::new("jacksboro.tif"), fault))
 }
 

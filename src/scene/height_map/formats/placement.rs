@@ -33,6 +33,14 @@ pub(super) struct MapCoordinates {
 }
 
 impl MapCoordinates {
+    /// The same area in so many columns and rows, each sample in the middle of an equal part of it.
+    pub(super) fn in_parts(self, width: u32, height: u32) -> Self {
+        let parts = DVec2::new(self.width.into(), self.height.into()) / DVec2::new(width.into(), height.into());
+        let step = self.step * parts;
+        let inwards = (step - self.step) / 2.0 * DVec2::new(1.0, -1.0);
+        MapCoordinates { north_west: self.north_west.map(|first| first + inwards), step, width, height }
+    }
+
     /// The placement in the unit given; without one, coordinates that can be longitude and latitude in steps below 0.1
     /// degrees are taken for degrees, as GTOPO30 has them, and all others for metres.
     pub(super) fn placed(&self, unit: Option<Unit>) -> Placement {
@@ -106,6 +114,16 @@ mod tests {
         assert_eq!(unit(&projected(r#"UNIT["broken""#)), Some(Unit::Metres(1.0)));
         assert_eq!(unit("Projection UTM\nUnits METERS\n"), Some(Unit::Metres(1.0)));
         assert_eq!(unit("nothing"), None);
+    }
+
+    #[test]
+    fn parts_of_an_area_have_their_middles() {
+        let north_west = Some(DVec2::new(100.5, 39.5));
+        let fine = || MapCoordinates { north_west, step: DVec2::ONE, width: 8, height: 12 };
+        let coarse = fine().in_parts(4, 3);
+        assert_eq!((coarse.north_west, coarse.step), (Some(DVec2::new(101.0, 38.0)), DVec2::new(2.0, 4.0)));
+        let same = fine().in_parts(8, 12);
+        assert_eq!((same.north_west, same.step), (north_west, DVec2::ONE));
     }
 
     #[test]

@@ -330,7 +330,7 @@ fn a_geotiff_of_too_many_samples_is_refused_with_the_way_out() {
         );
     }
     bytes.extend([0; 4]);
-    let fault = geotiff::parse(2 * u64::from(side).pow(2) + 200, Cursor::new(bytes)).unwrap_err().to_string();
+    let fault = geotiff::parse(2 * u64::from(side).pow(2) + 200, Cursor::new(bytes), 0).unwrap_err().to_string();
     assert!(
         fault.contains("its samples take 3051 MiB, and 2048 are read at most") && fault.contains("gdalbuildvrt"),
         "{fault}"
@@ -342,7 +342,7 @@ fn parse(ending: &str, bytes: Vec<u8>) -> Result<HeightMap, Fault> {
     let size_bytes = bytes.len() as u64;
     match ending {
         "asc" => ascii_grid::parse(size_bytes, bytes.as_slice(), None),
-        "tif" => geotiff::parse(size_bytes, Cursor::new(bytes)),
+        "tif" => geotiff::parse(size_bytes, Cursor::new(bytes), 0),
         "png" => png::parse(size_bytes, Cursor::new(bytes)),
         // The size is as it should be, and the file ends early.
         "hgt" => hgt::parse("N37E140.hgt", 2_884_802, bytes.as_slice()),

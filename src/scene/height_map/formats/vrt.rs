@@ -107,7 +107,7 @@ impl Mosaic {
             if file.is_dir() || file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt")) {
                 return Err(refused(format!("{}: a mosaic's parts are files of heights", part.name)));
             }
-            let map = load_file(&file)?;
+            let map = load_file(&file, 0)?;
             let ((column, row), (columns, rows)) = (part.from, part.size);
             if column + columns > map.width() || row + rows > map.height() {
                 let (wide, high) = (map.width(), map.height());
@@ -317,7 +317,7 @@ mod tests {
     fn load_text(folder: &Path, text: &str) -> Result<HeightMap, Error> {
         let path = folder.join("all.vrt");
         fs::write(&path, text).unwrap();
-        super::super::load(&path)
+        super::super::load(&path, 0)
     }
 
     #[test]
