@@ -6,11 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-<<<<<<< HEAD
-use super::{chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle};
-=======
-use super::{chunks, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
->>>>>>> 287422a (wip)
+use super::{chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
