@@ -43,9 +43,11 @@ void main() {
 #ifdef SIMULATION_SPH
     vec3 daylight = object.paint * sky_on(normal);
     vec3 glow = object.paint * (is_front ? to_front : to_back);
-    vec3 lit = mix(daylight + glow, encoded(decoded(daylight) + glow), scene.is_blackbody);
+    // A black body's light is linear, exposed and encoded as the lava's is.
+    vec3 lit = toned(mix(daylight, decoded(daylight), scene.is_blackbody) + glow, object.exposure, object.knee);
+    color = vec4(mix(lit, encoded(lit), scene.is_blackbody), 1.0);
 #else
     vec3 lit = object.paint * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y);
-#endif
     color = vec4(toned(lit, object.exposure, object.knee), 1.0);
+#endif
 }

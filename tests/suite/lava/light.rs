@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::lava::reference::light;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceKind, Variant};
+use fumarole::papers::lava::reference::{encoded, light};
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceKind, Tone, Variant};
 use fumarole::scene::{Camera, shapes};
 use glam::{DVec3, Mat4, Vec3};
 
@@ -114,5 +114,35 @@ fn a_ball_over_lava_is_lit_from_below() {
         };
         let (hot, cold) = (redness(1423.0), redness(700.0));
         assert!(hot.1 > 1.5 * hot.0 && hot.1 > 1.3 * cold.1, "{hot:?} {cold:?}");
+    });
+}
+
+/// Twice the exposure is twice the light of ground and objects, as of the lava: they are exposed before they are encoded.
+#[test]
+fn exposure_is_of_light() {
+    gpu_test(|device| {
+        let of = |exposure: f32| {
+            let parameters = Parameters { exposure, tone: Tone::Clip, ..hot() };
+            let mut lava = with_ball(device, &parameters, Vec3::new(1.4, 0.7, 0.6), 1423.0);
+            draw(device, &mut lava, 0);
+            let sums: Vec<[f32; 4]> = texels(device, &lava.splatting.sums);
+            (texels::<[u8; 4]>(device, &lava.splatting.normalisation.picture), sums)
+        };
+        let ((once, sums), (twice, _)) = (of(1.0), of(2.0));
+        let mut compared = 0;
+        for (at, (one, two)) in once.iter().zip(&twice).enumerate().filter(|&(at, _)| sums[at][3] == 0.0) {
+            for axis in 0..3 {
+                let [one, two] = [one, two].map(|pixel| f64::from(pixel[axis]));
+                if one < 20.0 || two > 254.0 {
+                    continue;
+                }
+                let decoded = |byte: f64| ((byte / 255.0 + 0.055) / 1.055).powf(2.4);
+                // To half a step of either byte.
+                let [low, high] = [one - 0.6, one + 0.6].map(|byte| 255.0 * encoded(2.0 * decoded(byte)));
+                assert!(two > low - 0.6 && two < high + 0.6, "{at}: {one} {two}");
+                compared += 1;
+            }
+        }
+        assert!(compared > 3000, "{compared}");
     });
 }
