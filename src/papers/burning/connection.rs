@@ -1,5 +1,5 @@
-//! What holds together (3.5.4): consumed triangles leave unless something would come off. Part of `surface-removal`; the
-//! search is that of [`parts`](super::parts), without some of what is consumed.
+//! Connectivity (3.5.4): consumed triangles leave unless something would come off. Part of `surface-removal`; the search
+//! is that of [`parts`](super::parts), without some of the consumed ones.
 
 use std::sync::Arc;
 
