@@ -20,9 +20,8 @@ const TURNS: u8 = 8;
 const ELEVATIONS_DEG: [f32; 4] = [12.0, 30.0, 50.0, 75.0];
 /// Their distance, in diagonals of the space.
 const DISTANCE: f32 = 0.9;
-/// Of the space's shortest side: neighbours whose depths differ by more lie at an outline.
-const OUTLINE: f32 = 0.15;
-/// What splats show lies behind the surface, in radii of a splat.
+/// What splats show lies behind the surface, in radii of a splat. Neighbours whose depths differ by as much lie at an outline, which splats
+/// draw a pixel wider or narrower.
 const BEHIND: f32 = 4.0;
 
 /// From all around and above.
@@ -78,7 +77,7 @@ impl Depths {
         }
     }
 
-    /// True well inside an outline: all neighbours up to two pixels away are within so many metres of the pixel.
+    /// True well inside an outline: all neighbours up to two pixels away are within so many metres of the pixel's depth.
     fn is_inside(&self, at: usize, within_m: f32) -> bool {
         let (x, y) = ((at % self.width) as i64, (at / self.width) as i64);
         let height = (self.metres.len() / self.width) as i64;
@@ -92,8 +91,8 @@ impl Depths {
     }
 
     /// Pixels well inside an outline, and those of them at which splats show what lies so far behind.
-    fn gaps(&self, splats: &Depths, within_m: f32, behind_m: f32) -> (usize, usize) {
-        let inside = (0..self.metres.len()).filter(|&at| self.is_inside(at, within_m));
+    fn gaps(&self, splats: &Depths, behind_m: f32) -> (usize, usize) {
+        let inside = (0..self.metres.len()).filter(|&at| self.is_inside(at, behind_m));
         inside.fold((0, 0), |(seen, gaps), at| {
             (seen + 1, gaps + usize::from(splats.metres[at] > self.metres[at] + behind_m))
         })
@@ -135,11 +134,11 @@ pub fn table(machine: &mut Machine, setup: &Setup, frame: u32) -> Result<ResultT
         depths(machine, &setup, &cameras, frame)
     };
     let rays = of(SurfaceDraw::March, SplatShape::Disc)?;
-    let (within_m, behind_m) = (OUTLINE * p.space_m.min_element(), BEHIND * p.splat_radius_m);
+    let behind_m = BEHIND * p.splat_radius_m;
     let mut row = |shape: SplatShape| -> Result<Vec<Value>, Error> {
         let splats = of(SurfaceDraw::Splats, shape)?;
         let counts: Vec<(usize, usize)> =
-            rays.iter().zip(&splats).map(|(rays, splats)| rays.gaps(splats, within_m, behind_m)).collect();
+            rays.iter().zip(&splats).map(|(rays, splats)| rays.gaps(splats, behind_m)).collect();
         let (seen, gaps) = counts.iter().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
         let worst = counts.iter().map(|count| count.1).max();
         let gaping = counts.iter().filter(|count| count.1 > 0).count();
@@ -187,8 +186,8 @@ mod tests {
         // Just behind, in front, and at the outline.
         (splats[8 * 4 + 3], splats[8 * 4 + 4], splats[8 * 4 + 6]) = (3.05, 2.0, 20.0);
         // From 2 to 5 down, from 2 to 4 across.
-        assert_eq!(of(rays.clone()).gaps(&of(splats), 0.1, 0.1), (12, 1));
-        assert_eq!(of(vec![20.0; 64]).gaps(&of(rays), 0.1, 0.1), (0, 0));
+        assert_eq!(of(rays.clone()).gaps(&of(splats), 0.1), (12, 1));
+        assert_eq!(of(vec![20.0; 64]).gaps(&of(rays), 0.1), (0, 0));
     }
 
     /// The ray through a pixel comes out in its middle.
