@@ -10,7 +10,7 @@ fn asset(name: &str) -> PathBuf {
 }
 
 fn load_asset(name: &str) -> HeightMap {
-    load(&asset(name)).unwrap_or_else(|error| panic!("{error}"))
+    load(&asset(name), 0).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn heights(map: &HeightMap) -> Vec<f32> {
@@ -90,7 +90,7 @@ fn a_tile_written_by_gdal_is_read() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("N42W072.hgt");
     std::fs::write(&path, bytes).unwrap();
-    let tile = load(&path).unwrap();
+    let tile = load(&path, 0).unwrap();
     let voids = places.clone().filter(|(column, row)| sample(*column, *row) == i16::MIN).count();
     assert_eq!((tile.width(), tile.height(), tile.voids()), (1_201, 1_201, voids as u64));
     for (column, row) in places {
@@ -149,7 +149,7 @@ fn raster(
     let text = std::fs::read_to_string(asset("topobathy-int16.hdr")).unwrap();
     std::fs::write(path("hdr"), header(&text)).unwrap();
     std::fs::write(path(ending), data(std::fs::read(asset("topobathy-int16.bil")).unwrap())).unwrap();
-    load(&path(ending)).map_err(|error| error.to_string().replace(&format!("{}/", directory.path().display()), ""))
+    load(&path(ending), 0).map_err(|error| error.to_string().replace(&format!("{}/", directory.path().display()), ""))
 }
 
 #[test]
@@ -249,7 +249,7 @@ fn files_that_cannot_be_read_are_named() {
         ("alone.bil", "its header (.hdr) is missing; put it beside it as alone"),
         ("alone2.hdr", "its samples (.bil, .dem or .bsq) is missing"),
     ] {
-        let message = load(&path(name)).expect_err(name).to_string();
+        let message = load(&path(name), 0).expect_err(name).to_string();
         assert!(message.contains(expected) && message.contains(name) && !message.contains('\n'), "{message}");
     }
 }
@@ -262,7 +262,7 @@ fn content_tells_a_tiff_or_png_of_any_name() {
     {
         let path = directory.path().join(to);
         std::fs::copy(asset(from), &path).unwrap();
-        assert_eq!(load(&path).unwrap().samples(), load_asset(from).samples());
+        assert_eq!(load(&path, 0).unwrap().samples(), load_asset(from).samples());
     }
 }
 
