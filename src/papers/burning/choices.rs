@@ -70,10 +70,8 @@ pub enum SmokeAs {
 
 impl Choice for SmokeAs {
     const ALL: &'static [SmokeAs] = &[SmokeAs::Particles, SmokeAs::Volume];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("particles", "A square for each particle"),
-        ("volume", "Its density in a grid, which rays march through"),
-    ];
+    const NAMES: &'static [(&'static str, &'static str)] =
+        &[("particles", "A square for each particle"), ("volume", "Its density in a grid, which rays march through")];
 }
 
 /// The quantity that colours the mesh.

@@ -64,8 +64,7 @@ pub fn marched(cells: &[DVec4], grid: Grid, (eye, ray): (DVec3, DVec3), to: f64,
     for i in 0..count as u32 {
         let at = (eye + ray * (from + (f64::from(i) + 0.5) * length) - grid.low) / grid.width - 0.5;
         let most = IVec3::splat(SMOKE_CELLS as i32 - 1);
-        let lit: DVec4 =
-            around(at).map(|(cell, weight)| weight * cells[number(cell.clamp(IVec3::ZERO, most))]).sum();
+        let lit: DVec4 = around(at).map(|(cell, weight)| weight * cells[number(cell.clamp(IVec3::ZERO, most))]).sum();
         let kept = (-lit.w * length).exp();
         if lit.w > 0.0 {
             light += transparency * (1.0 - kept) * lit.truncate() / lit.w;
