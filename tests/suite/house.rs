@@ -52,7 +52,10 @@ const FRAMES: [(&str, &str); 16] = [
     ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --smart --variant culled"),
     ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --layers 2 --variant hit"),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant all"),
-    ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --no-preload --smoke-as volume --variant shell"),
+    (
+        "burning",
+        "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --no-preload --smoke-as volume --variant shell",
+    ),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant melting"),
     ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --shading wire --variant shell"),
     ("terrain", "--size 48x32 --resolution 64 --variant all"),
