@@ -24,7 +24,7 @@ layout(set = 0, binding = 58, std430) buffer SmokeSums {
 };
 
 // The integral of clamp(1 - r - 0.7 (noise - 0.3), 0, 1) over the square (draw-smoke.frag), in the mean over the noise.
-const float BODY = 0.73;
+const float BODY = 0.775;
 
 void main() {
     uint i = element(64u);
