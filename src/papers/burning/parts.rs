@@ -46,9 +46,13 @@ host_block! {
     /// Progress of the search (`burning/parting.glsl`).
     #[derive(Default)]
     pub(super) struct Progress {
+        /// 1 where a vertex is not below its root yet.
         pub(super) is_unsettled: u32,
+        /// 1 where the parts of the last search have their numbers.
         pub(super) is_numbered: u32,
+        /// Of the last search that came to its end.
         pub(super) part_count: u32,
+        /// Bits of a half of a moment's summand.
         pub(super) moment_bits: u32,
     }
 }

@@ -64,7 +64,7 @@ pub struct Constants {
     pub floor: f64,
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
-    /// What is consumed stays as long as something would come off (3.5.4).
+    /// Triangles that are consumed stay as long as something would come off (3.5.4).
     pub keep_connected: bool,
     /// Signs of rotations are random (3.5.1).
     pub random_rotation: bool,
