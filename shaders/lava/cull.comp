@@ -47,7 +47,8 @@ bool is_cluster_beyond(vec2 from_m, vec2 to_m) {
     bool is_row = from_m.y == to_m.y;
     vec2 along_m = is_row ? vec2(from_m.x, to_m.x) : vec2(0.0, scene.space_m.x);
     float across_m = DIAGONAL * scene.splat_radius_m;
-    vec3 reach_m = vec3(across_m, across_m * mix(1.0, 1.0 / STEEPEST, scene.fitted), across_m);
+    // Up and down by both slopes.
+    vec3 reach_m = vec3(across_m, across_m * mix(1.0, DIAGONAL / STEEPEST, scene.fitted), across_m);
     vec3 low_m = vec3(along_m.x, 0.0, from_m.y) - reach_m;
     vec3 high_m = vec3(along_m.y, scene.space_m.y, to_m.y) + reach_m;
     uint sides = ALL_SIDES;
