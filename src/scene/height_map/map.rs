@@ -59,7 +59,7 @@ impl HeightMap {
         Ok(Self { samples, range_m, ..map })
     }
 
-    /// What a map says of itself but its range and its slope; its samples, of which `kind` has none, lie elsewhere.
+    /// A map without its samples, which lie elsewhere, so that its range and its slope are not known; `kind` has no sample.
     ///
     /// # Errors
     /// A side outside [`Self::SIDE`].

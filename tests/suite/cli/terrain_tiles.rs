@@ -148,7 +148,7 @@ fn overviews_are_those_of_a_geotiff() {
     render(&format!("--map {jacksboro}")).refused(2, &["jacksboro.tif", "it has 0 overviews"]);
 }
 
-/// What needs the samples themselves is refused.
+/// Variants and options that need the samples themselves are refused.
 #[test]
 fn what_needs_samples_is_not_streamed() {
     let render =

@@ -20,11 +20,17 @@ const GEO_DOUBLE_PARAMETERS: Tag = Tag::Unknown(34_736);
 
 /// A picture of a TIFF or BigTIFF, with what the tags of GeoTIFF and GDAL say of it.
 pub(super) struct Picture<R: Read + Seek> {
+    /// At the picture.
     pub(super) decoder: Decoder<R>,
+    /// Of a sample.
     pub(super) bits: u8,
+    /// Samples in a row.
     pub(super) width: u32,
+    /// Number of rows.
     pub(super) height: u32,
+    /// The value of a sample without a height.
     pub(super) no_data: Option<f64>,
+    /// Spacing and coordinates, as far as the file has them.
     pub(super) placement: Placement,
 }
 
@@ -175,7 +181,7 @@ impl<R: Read + Seek> Tags<'_, R> {
         Ok(())
     }
 
-    /// Where the samples of a picture of so many columns and rows lie, and the unit of that.
+    /// Places of the samples of a picture of so many columns and rows, and their unit.
     fn coordinates(&mut self, (width, height): (u32, u32)) -> Result<Option<(MapCoordinates, Option<Unit>)>, Fault> {
         let keys = self.keys()?;
         // A tie point names the sample's corner, or with PixelIsPoint its centre.

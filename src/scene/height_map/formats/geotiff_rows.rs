@@ -261,7 +261,7 @@ mod tests {
         (0..2).for_each(|overview| assert_same(&path, overview));
     }
 
-    /// What GDAL wrote in tiles and in strips.
+    /// Files that GDAL wrote, in tiles and in strips.
     #[test]
     fn shipped_files_are_read_by_their_tiles() {
         let maps = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/maps");

@@ -1,4 +1,4 @@
-//! What a map says of itself, as text: for files that hold its samples in another order.
+//! A map without its samples, as text: for files that hold those in another order.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
