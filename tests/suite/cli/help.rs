@@ -2,7 +2,7 @@
 
 use super::program::fumarole;
 
-/// What a command prints of itself.
+/// The help that a command prints.
 fn help(command: &str, option: &str) -> String {
     fumarole(command).arg(option).run().succeeded().stdout
 }
