@@ -11,6 +11,7 @@
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary`, `present-fences` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
+//! | `FUMAROLE_LAYER_VULKAN` | `1.1`: the version of Vulkan that the device has, where it is higher |
 //! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |
 //! | `FUMAROLE_LAYER_REPORT` | file that tells, when an instance is destroyed, of the calls, of labels and of what is alive |
 //!

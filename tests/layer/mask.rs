@@ -80,8 +80,15 @@ fn mask_features(core: &mut vk::PhysicalDeviceFeatures) {
     clear("full-draw-index", &mut core.full_draw_index_uint32);
 }
 
+/// The version of Vulkan that the device is to have, of 1.0 to 1.2.
+fn older_version() -> Option<u32> {
+    let minor = env::var("FUMAROLE_LAYER_VULKAN").ok()?.strip_prefix("1.")?.parse().ok()?;
+    Some(vk::make_api_version(0, 1, minor, 0))
+}
+
 fn mask_properties(properties: &mut vk::PhysicalDeviceProperties) {
     mask_limits(&mut properties.limits);
+    properties.api_version = properties.api_version.min(older_version().unwrap_or(u32::MAX));
     if env::var_os("FUMAROLE_LAYER_DISCRETE").is_some() {
         properties.device_type = vk::PhysicalDeviceType::DISCRETE_GPU;
     }

@@ -1,5 +1,6 @@
 //! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document and leave
-//! no field out, passes in files of their names, and no test's files in the repository.
+//! no field out, passes in files of their names, a test for each misuse of the Vulkan layer, and no test's files in the
+//! repository.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -159,4 +160,33 @@ fn passes_stand_in_files_of_their_names() {
             assert!(stems.contains(pass.replace('-', "_").as_str()), "{paper}: no file of the pass {pass}");
         }
     }
+}
+
+#[test]
+fn each_misuse_of_the_layer_names_the_tests_that_try_it() {
+    let files: Vec<PathBuf> = ["src/gpu", "tests/suite"].into_iter().flat_map(sources).collect();
+    let has_test = |path: &PathBuf, test: &str| {
+        let text = fs::read_to_string(path).unwrap();
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        lines.windows(2).any(|pair| pair[0] == "#[test]" && pair[1].starts_with(&format!("fn {test}(")))
+    };
+    let is_test = |name: &str| {
+        name.split_once("::").is_some_and(|(file, test)| {
+            let mut named = files.iter().filter(|path| path.file_stem().is_some_and(|stem| stem == file));
+            named.any(|path| has_test(path, test))
+        })
+    };
+    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/gpu/mod.rs")).unwrap();
+    let (_, table) = page.split_once("//! | --- | --- | --- | --- |\n").unwrap();
+    let mut lines = 0;
+    for line in table.lines().map_while(|line| line.strip_prefix("//! | ")) {
+        let cells: Vec<&str> = line.split(" | ").collect();
+        assert_eq!(cells.len(), 4, "{line}");
+        let tests: Vec<&str> = cells[3].split('`').skip(1).step_by(2).collect();
+        assert!(!tests.is_empty(), "tried by no test: {line}");
+        let missing: Vec<&&str> = tests.iter().filter(|name| !is_test(name)).collect();
+        assert!(missing.is_empty(), "no such tests: {missing:?}");
+        lines += 1;
+    }
+    assert!(lines >= 35, "{lines} lines");
 }

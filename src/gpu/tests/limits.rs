@@ -10,7 +10,7 @@ use super::super::pass::Pass;
 use super::super::profiling_lock::ProfilingLock;
 use super::super::render_pass::{Blend, Load};
 use super::super::shader::{Compiler, ShaderLibrary};
-use super::super::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, Mode, Recorder, Topology, transfer};
+use super::super::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, Mode, Recorder, Sampler, Topology, transfer};
 use super::{alone, open_device};
 
 crate::host_block! {
@@ -69,13 +69,17 @@ fn sum(device: &Arc<Device>) -> Result<(), Error> {
     pass.build(&ShaderLibrary::new(device, Compiler::Glslang, None)?).map(|_| ())
 }
 
+fn smooth(device: &Arc<Device>) -> Result<(), Error> {
+    Sampler::new(device, "smooth", vk::Filter::LINEAR).map(|_| ())
+}
+
 type Work = fn(&Arc<Device>) -> Result<(), Error>;
 type Lower = fn(&mut vk::PhysicalDeviceLimits);
 
 #[test]
 fn nothing_is_made_beyond_the_limits() {
     let _alone = alone();
-    let cases: [(Work, Lower, &str); 21] = [
+    let cases: [(Work, Lower, &str); 22] = [
         (points, |l| l.max_framebuffer_width = 7, "target: width in texels 8 is beyond this device's limit of 7"),
         (points, |l| l.max_framebuffer_height = 7, "target: height in texels 8 is"),
         (area, |l| l.max_framebuffer_width = 7, "pass area: width in pixels 8 is"),
@@ -112,10 +116,11 @@ fn nothing_is_made_beyond_the_limits() {
         (sum, |l| l.max_compute_work_group_size[0] = 63, "threads of a workgroup along one axis 64 is"),
         (sum, |l| l.max_compute_work_group_invocations = 63, "threads of a workgroup 64 is"),
         (sum, |l| l.max_compute_shared_memory_size = 255, "bytes that a workgroup shares 256 is"),
+        (smooth, |l| l.max_sampler_allocation_count = 0, "smooth: count of samplers 1 is"),
         (sum, |l| l.max_memory_allocation_count = 1, "sums: count of blocks of memory 2 is"),
     ];
     let device = open_device();
-    for work in [points, quads, area, sum] {
+    for work in [points, quads, area, sum, smooth] {
         work(&device).unwrap();
     }
     drop(device);

@@ -21,7 +21,8 @@ use x11rb::xcb_ffi::XCBConnection;
 use super::super::surface::{Display, Surface};
 use super::super::swapchain::{PresentMode, Presented, Swapchain};
 use super::super::{
-    Blend, Compiler, Device, Error, Image, ImageDesc, ImageView, Instance, Load, Mode, Pass, Recorder, ShaderLibrary,
+    Blend, Compiler, Device, Error, Image, ImageDesc, ImageView, Instance, Load, Mode, Pass, PhysicalDevice, Recorder,
+    ShaderLibrary,
 };
 use super::{Kind, alone, choose, fail, failing, open_device};
 
@@ -168,6 +169,24 @@ fn a_swapchain_takes_over_from_the_one_before() {
             (0..5).for_each(|_| show(&mut made, &picture));
             old = Some(made);
         }
+    });
+}
+
+#[test]
+fn a_device_presents_by_an_instance_with_surfaces() {
+    presenting(|device, _, window| {
+        let plain = open_device();
+        let found = PhysicalDevice::enumerate(plain.instance()).unwrap();
+        let same = choose(found, Some(&plain.physical().uuid_text()), &[]).unwrap();
+        let refused = message(Device::open_presenting(plain.instance(), same));
+        assert!(refused.contains("presenting: its instance was not made for a display"), "{refused}");
+        let refused = message(Surface::new(plain.instance(), window));
+        assert!(refused.contains("the instance was not made for this kind of display"), "{refused}");
+        let other = Instance::for_display(false, &Display::of(window).unwrap()).unwrap();
+        let surface = Surface::new(&other, window).unwrap();
+        let refused = message(swapchain(device, &surface, None));
+        assert!(refused.contains("the surface belongs to another device"), "{refused}");
+        assert_valid(&plain);
     });
 }
 

@@ -213,6 +213,23 @@ fn a_device_without_the_queue_is_named() {
     }
 }
 
+/// It is asked for nothing that its version lacks, lists no feature, and no paper takes it.
+#[test]
+fn a_device_of_an_older_vulkan_is_listed_and_refused() {
+    let layer = Layer::new();
+    for version in ["1.0", "1.1", "1.2"] {
+        let devices = layer.before(fumarole("devices --json"), false).env("FUMAROLE_LAYER_VULKAN", version);
+        let devices = devices.run().succeeded().json();
+        assert!(devices[0]["api_version"].as_str().unwrap().starts_with(version), "{version}: {}", devices[0]);
+        let features = devices[0]["features"].as_object().unwrap();
+        assert!(features.values().all(|has| has == false), "{version}: {features:?}");
+        for paper in &PAPERS {
+            assert_eq!(devices[0]["papers"][paper.name]["lacks"][0], "Vulkan 1.3", "{version}: {}", paper.name);
+            run_all(paper, &layer, "FUMAROLE_LAYER_VULKAN", version).refused(3, &["lacks Vulkan 1.3"]);
+        }
+    }
+}
+
 /// A ball of triangles as a binary STL file.
 fn ball(side: u32) -> Vec<u8> {
     let mesh = fumarole::scene::shapes::sphere(side, side);
