@@ -122,7 +122,7 @@ fn differences(device: &Arc<Device>, parameters: &Parameters) -> f64 {
     rows.flat_map(|row| row.windows(2)).map(|pair| f64::from(pair[0][0].abs_diff(pair[1][0]))).sum()
 }
 
-/// What chapter 9 asks for: blending the splats' colours blurs the rock, shading each pixel does not.
+/// Chapter 9's wish: blending the splats' colours blurs the rock, shading each pixel does not.
 #[test]
 fn the_rock_is_not_blurred() {
     gpu_test(|device| {
