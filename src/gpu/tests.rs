@@ -1,7 +1,7 @@
 //! Tests that need the layer's inside: a barrier left out is reported, and every shader makes a pipeline.
 
 mod limits;
-#[cfg(feature = "window")]
+#[cfg(all(feature = "window", unix))]
 mod swapchains;
 
 use std::cell::RefCell;

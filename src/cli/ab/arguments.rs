@@ -61,7 +61,7 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
     let mut rest = arguments.into_iter();
     let mut first: Vec<OsString> = rest.by_ref().take(2).collect();
     let mut rest = rest.peekable();
-    let (mut common, mut of_paper) = (Vec::new(), None);
+    let (mut common, mut of_paper): (_, Option<Vec<String>>) = (Vec::new(), None);
     let is_paper = |argument: &OsString| papers.iter().any(|paper| argument == paper.name);
     let mut ends_without_value = false;
     while let Some(argument) = rest.next() {
@@ -72,7 +72,7 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
             common.extend(rest.by_ref());
             break;
         }
-        let is_paper_s = |name: &str| of_paper.iter().flatten().any(|known: &String| *known == name);
+        let is_paper_s = |name: &str| of_paper.as_ref().is_some_and(|known| known.iter().any(|known| *known == name));
         match own.iter().find(|option| option.is(name) && !is_paper_s(name)) {
             Some(option) => {
                 let has_value = name.len() < text.len();

@@ -20,8 +20,8 @@ const TURNS: u8 = 8;
 const ELEVATIONS_DEG: [f32; 4] = [12.0, 30.0, 50.0, 75.0];
 /// Their distance, in diagonals of the space.
 const DISTANCE: f32 = 0.9;
-/// Distance, in radii of a splat, by which splats show what lies behind the surface. Neighbours whose depths differ by as much lie at an outline, which splats
-/// draw a pixel wider or narrower.
+/// Distance, in radii of a splat, by which splats show what lies behind the surface. Neighbours whose depths differ by as
+/// much lie at an outline, which splats draw a pixel wider or narrower.
 const BEHIND: f32 = 4.0;
 
 /// From all around and above.
