@@ -161,22 +161,25 @@ impl Grid {
         densities: &[[f32; 4]],
         planes: &GridPlanes,
         accepted: &mut Vec<Point>,
-        [lowest, highest]: &mut [f32; 2],
+        density_range: &mut [f32; 2],
     ) {
         let [dx, dz] = self.spacing_m;
+        // A register holds these while points are added; what a reference names goes to memory at every one.
+        let [mut lowest, mut highest] = *density_range;
         for (row, texels) in densities.chunks_exact(self.columns).enumerate() {
             let z = (row as f32 + 0.5) * dz;
             for (column, texel) in texels.iter().enumerate() {
                 let x = (column as f32 + 0.5) * dx;
                 for (&density, &y) in texel.iter().zip(&planes.heights_m).take(planes.count) {
-                    *lowest = lowest.min(density);
-                    *highest = highest.max(density);
+                    lowest = lowest.min(density);
+                    highest = highest.max(density);
                     if density >= self.rho {
                         accepted.push(Point { position: [x, y, z] });
                     }
                 }
             }
         }
+        *density_range = [lowest, highest];
     }
 
     fn follow(&self, densities: &[[f32; 4]], planes: &GridPlanes, columns: &mut Columns) {

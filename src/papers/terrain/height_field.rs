@@ -91,18 +91,23 @@ pub struct Cell {
     pub uv: Vec2,
 }
 
+// Rays ask these at every step, from other files. `#[inline]`, here and there: the compiler splits the library into units of
+// a few files each, and inlines across them what is so marked, with or without link-time optimisation.
 impl<T: Texel> Field<'_, T> {
+    #[inline]
     pub fn shape(&self) -> Shape {
         self.highest.shape
     }
 
     /// The last column and row of a level.
+    #[inline]
     pub fn last(&self, shift: i32) -> IVec2 {
         let shape = self.shape();
         IVec2::new((shape.width as i32 - 1) >> shift, (shape.height as i32 - 1) >> shift)
     }
 
     /// The highest or lowest values `shift` levels above the data, row by row; the level exists.
+    #[inline]
     pub fn level(&self, bound: Bound, shift: u32) -> &[T] {
         match bound {
             _ if shift == 0 => self.data,
@@ -112,6 +117,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// The highest or lowest value of what a texel `shift` levels above the data covers; the texel exists.
+    #[inline]
     pub fn value(&self, bound: Bound, shift: i32, texel: IVec2) -> f32 {
         let columns = ((self.shape().width as usize - 1) >> shift) + 1;
         let index = texel.y as usize * columns + texel.x as usize;
@@ -119,6 +125,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// The cell around a place in nodes. A coarser level's texel stands in the middle of the nodes that it covers.
+    #[inline]
     pub fn cell(&self, shift: i32, place: Vec2) -> Cell {
         let size = (-shift as f32).exp2();
         let last = self.last(shift);
@@ -130,6 +137,7 @@ impl<T: Texel> Field<'_, T> {
 
 /// The smallest number of levels above the data whose texels are as large as an extent in nodes:
 /// 1/2^(level + 1) < Lp <= 1/2^level.
+#[inline]
 pub fn shift_for(extent: f32, top: u32) -> i32 {
     let exponent = ((extent.to_bits() as i32 + 0x7f_ffff) >> 23) - 127;
     exponent.clamp(0, top as i32)

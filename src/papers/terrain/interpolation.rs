@@ -14,6 +14,7 @@ pub const OVERSHOOT: f64 = 9.0 / 32.0;
 
 impl<T: Texel> Field<'_, T> {
     /// The height at a place in nodes, on a level.
+    #[inline]
     pub fn height(&self, shift: i32, place: Vec2) -> f32 {
         let cell = self.cell(shift, place);
         match self.interpolation {
@@ -70,6 +71,7 @@ impl<T: Texel> Field<'_, T> {
 
     /// A height that nothing which interpolation reads between two places exceeds; none where no map is. `shift` is that of the
     /// rectangle's extent; a coarser level answers where more than four texels of it are touched.
+    #[inline]
     pub fn highest_below(&self, low: Vec2, high: Vec2, shift: i32) -> Option<f32> {
         let last_node = self.last(0);
         let end = last_node.as_vec2();
@@ -90,6 +92,7 @@ impl<T: Texel> Field<'_, T> {
     /// The ray parameter, 0 to 1 from `near` to `far` in nodes, at which a line as short as a texel of a level first meets the
     /// interpolated surface of that level. It crosses at most three cells. `tolerance` is how near a height counts as met where
     /// the root is approached, on the data.
+    #[inline]
     pub fn intersect(&self, shift: i32, near: Vec3, far: Vec3, tolerance: f32) -> Option<f32> {
         // A coarser level's texel stands in the middle of the nodes that it covers.
         let size = (-shift as f32).exp2();
@@ -116,6 +119,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// The fraction of a line inside a cell of a level, `from` counted from its corner, at which it first meets the surface.
+    #[inline]
     pub fn touch(&self, shift: i32, cell: IVec2, from: Vec3, direction: Vec3, tolerance: f32) -> Option<f32> {
         match self.interpolation {
             Interpolation::Bilinear => touch_bilinear(self.corners(shift, cell), from, direction),
@@ -126,6 +130,7 @@ impl<T: Texel> Field<'_, T> {
     /// A height above the surface over a block of cells, where levels are [`Cover::Cells`].
     ///
     /// [`Cover::Cells`]: super::pyramid::Cover::Cells
+    #[inline]
     pub fn highest_over(&self, level: i32, block: IVec2) -> f32 {
         let highest = self.value(Bound::Highest, level, block);
         match self.interpolation {
@@ -135,6 +140,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// A height above the surface between two places, by texels that bound whole cells; none where no map is.
+    #[inline]
     pub fn highest_between(&self, low: Vec2, high: Vec2, shift: i32) -> Option<f32> {
         let end = self.last(0).as_vec2();
         if high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y {
@@ -151,6 +157,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// A height that no interpolated one exceeds where nothing but these four texels of a level and those between is read.
+    #[inline]
     fn highest_of(&self, level: i32, a: IVec2, b: IVec2) -> f32 {
         let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
         let highest = four.map(|texel| self.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
@@ -165,6 +172,7 @@ impl<T: Texel> Field<'_, T> {
     }
 
     /// Four corner values: north-west, north-east, south-west, south-east.
+    #[inline]
     fn corners(&self, shift: i32, a: IVec2) -> Vec4 {
         let b = (a + 1).min(self.last(shift));
         let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
@@ -187,6 +195,7 @@ impl<T: Texel> Field<'_, T> {
 }
 
 /// The fraction of the change from one number to another at which it crosses a whole one; 1 where it crosses none.
+#[inline]
 fn crossing(from: f32, to: f32) -> f32 {
     if from.floor() == to.floor() {
         return 1.0;
@@ -196,6 +205,7 @@ fn crossing(from: f32, to: f32) -> f32 {
 
 /// The ray parameter, 0 to 1, at which a line from `from` along `direction` inside a cell first touches the cell's surface.
 /// Along a line the surface (eq. 7) is a quadratic.
+#[inline]
 fn touch_bilinear(corners: Vec4, from: Vec3, direction: Vec3) -> Option<f32> {
     let a = corners.x;
     let (b, c) = (corners.y - a, corners.z - a);

@@ -151,6 +151,7 @@ impl<T: Texel> Pyramid<T> {
     }
 
     /// The texels of a level above the data.
+    #[inline]
     pub fn level(&self, shift: u32) -> Option<&[T]> {
         self.coarser.get((shift as usize).checked_sub(1)?).map(Vec::as_slice)
     }

@@ -149,6 +149,7 @@ impl<T: Texel> RayCaster<'_, T> {
     }
 
     /// True where a ray leaves its straight line by so little that a level's cells do not show it.
+    #[inline]
     pub(super) fn is_straight(&self, slack: Vec3, shift: i32) -> bool {
         let straight = STRAIGHT * (shift as f32).exp2();
         let terrain = self.terrain;
@@ -192,6 +193,7 @@ impl<T: Texel> RayCaster<'_, T> {
     }
 
     /// The level at which subdivision ends at a depth: the data's, or that of a pixel's footprint.
+    #[inline]
     pub(super) fn finest_shift(&self, depth_m: f32) -> i32 {
         match self.footprint {
             Footprint::Data => 0,

@@ -115,21 +115,26 @@ impl StraightSegment {
     }
 }
 
+// Once a step: see `Field`.
 impl RaySegment for StraightSegment {
+    #[inline]
     fn subsegment(&self, start: f32, size: f32) -> Subsegment {
         let near = self.from + start * self.whole;
         let far = self.from + (start + size) * self.whole;
         Subsegment { near, far, depth_m: self.depth_m(start), slack: Vec3::ZERO }
     }
 
+    #[inline]
     fn depth_m(&self, t: f32) -> f32 {
         self.near_m + t * (self.far_m - self.near_m)
     }
 
+    #[inline]
     fn entry_surface(&self, height: f32) -> Option<Surface> {
         (self.from.z <= height).then_some(self.side)
     }
 
+    #[inline]
     fn clip_to_map(&self, _: &Subsegment) -> Clip {
         Clip { near: 0.0, far: 1.0, surface: Surface::Terrain }
     }
