@@ -241,12 +241,12 @@ impl Outcome {
         text
     }
 
-    /// The points at which triangles are faster than rays or slower, and at which the level of detail changes nothing.
+    /// The time of triangles over that of rays at each point, and the points at which the level of detail changes nothing.
     pub fn tables(&self) -> Vec<NamedTable> {
         let of = |variant: Variant| self.rows.iter().filter(move |row| row.run.variant == variant.as_str());
         let mut triangles = ResultTable {
             title: "Triangles beside rays, measured in turn: their time over that of the rays, with the ends of its 95 % interval",
-            columns: &["triangles", "rays", "at", "ratio", "from", "to", "verdict"],
+            columns: &["triangles", "rays", "at", "ratio", "from", "to"],
             rows: Vec::new(),
         };
         for rays in [Variant::GpuCompute, Variant::GpuFragment] {
@@ -257,15 +257,9 @@ impl Outcome {
                     Some((row.label.as_str(), ratio))
                 });
                 triangles.rows.extend(pairs.map(|(label, Ratio { ratio, interval, .. })| {
-                    let verdict = match interval {
-                        None => "too few frames",
-                        Some([_, high]) if high < 1.0 => "faster",
-                        Some([low, _]) if low > 1.0 => "slower",
-                        Some(_) => "undecided",
-                    };
                     let [low, high] = [0, 1].map(|end| interval.map(|ends| ends[end]));
                     let (mesh, rays) = (mesh.as_str(), rays.as_str());
-                    vec![json!(mesh), json!(rays), json!(label), json!(ratio), json!(low), json!(high), json!(verdict)]
+                    vec![json!(mesh), json!(rays), json!(label), json!(ratio), json!(low), json!(high)]
                 }));
             }
         }
@@ -333,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_are_judged_beside_rays_of_their_point() {
+    fn triangles_stand_beside_rays_of_their_point() {
         let row = |label: &str, variant: Variant, ms: f64, count: usize| {
             let samples: Vec<f64> = (0..count).map(|i| ms * (0.99 + 0.005 * i as f64)).collect();
             let frame_ms = summarize(&samples);
@@ -349,9 +343,13 @@ mod tests {
         rows[2].run.results.insert("levels".into(), json!([0.5, 0.5]));
         let tables = Outcome::new(Axis::Map, rows).tables();
         assert_eq!(tables.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["triangles", "finest"]);
-        let verdicts: Vec<_> = tables[0].1.rows.iter().map(|row| (row[2].as_str(), row[6].as_str())).collect();
-        let expected = [("128", "faster"), ("512", "slower"), ("1024", "undecided"), ("2048", "too few frames")];
-        assert_eq!(verdicts, expected.map(|(at, verdict)| (Some(at), Some(verdict))));
+        let expected = [("128", 0.5), ("512", 2.0), ("1024", 1.0), ("2048", 0.5)];
+        for (row, (at, expected)) in tables[0].1.rows.iter().zip(expected) {
+            let [ratio, low, high] = [3, 4, 5].map(|cell| row[cell].as_f64());
+            assert_eq!((row.len(), row[2].as_str()), (6, Some(at)));
+            assert!(ratio.is_some_and(|ratio| (ratio - expected).abs() < 0.01), "{row:?}");
+            assert!(low <= ratio && (high.is_none() || ratio <= high), "{row:?}");
+        }
         assert!(tables[0].1.rows[3][4].is_null() && tables[0].1.rows[3][3].is_f64());
         assert_eq!(tables[1].1.rows, [[json!("128")]]);
     }
