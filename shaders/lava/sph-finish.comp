@@ -1,7 +1,7 @@
 #version 450
 
 // The step's end: velocities from the places, both into the textures at the particles' numbers, with
-// temperatures and rates of strain. The way that a particle has gone since the rock was laid on it is added up, for each of two
+// temperatures. The way that a particle has gone since the rock was laid on it is added up, for each of two
 // layings that are renewed in turn, as they are stretched ever more (Neyret 2003).
 
 #extension GL_EXT_samplerless_texture_functions : require
@@ -22,10 +22,6 @@ layout(set = 0, binding = 5, std430) readonly buffer Items {
 layout(set = 0, binding = 6, std430) readonly buffer Heat {
     vec2 list[]; // kelvin as the step ends, and the steepness of a particle's face
 } heat;
-
-layout(set = 0, binding = 9, std430) readonly buffer Change {
-    vec4 list[]; // the rate of strain per second in the fourth component
-} change;
 
 layout(set = 0, binding = 7, rgba32f) uniform image2D positions;
 
@@ -53,6 +49,6 @@ void main() {
     vec4 carried_m = flow.kept_rock.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
     carried.list[at] = carried_m;
     imageStore(carried_after, texel, carried_m);
-    imageStore(positions, texel, vec4(within, change.list[at].w));
+    imageStore(positions, texel, vec4(within, 0.0));
     imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, heat.list[at].x));
 }

@@ -1,7 +1,7 @@
 #version 450
 
-// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess. Temperatures and the
-// rates of strain that the last step left come with them.
+// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess. Temperatures come with
+// them.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -25,10 +25,8 @@ layout(set = 0, binding = 7, std430) buffer To {
 } to;
 
 layout(set = 0, binding = 8, std430) buffer Change {
-    vec4 list[]; // metres per second, and the rate of strain per second
+    vec4 list[]; // metres per second
 } change;
-
-layout(set = 0, binding = 9) uniform texture2D positions;
 
 void main() {
     uint at = element(64u);
@@ -41,5 +39,5 @@ void main() {
     vec4 after = before + vec4(flow.time_step_s * flow.gravity_m_s2, 0.0);
     pushed.list[at] = after;
     to.list[at] = after;
-    change.list[at] = vec4(vec3(0.0), texelFetch(positions, texel, 0).w);
+    change.list[at] = vec4(0.0);
 }

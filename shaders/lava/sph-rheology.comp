@@ -2,22 +2,27 @@
 
 // The viscosity of a particle over that of the melt at its temperature: the fit of Giordano and Dingwell (2003) for basalt of
 // Etna with 0.1 % of water, and below the solidus a Bingham crust with the yield stress of Ishihara et al. (1990), over the
-// rate of strain that the last step left. It is regularised by a largest viscosity (O'Donovan and Tanner 1984).
+// rate of strain that the last step left. It is regularised by a largest viscosity (O'Donovan and Tanner 1984). Pressure shakes
+// single particles, which is no flow: the tensor is the mean of those around, by the kernel.
 
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Change {
-    vec4 list[]; // the rate of strain per second in the fourth component
-} change;
+layout(set = 0, binding = 4, std430) readonly buffer Along {
+    vec4 list[]; // rates of strain per second: the tensor's diagonal
+} along;
 
-layout(set = 0, binding = 5, std430) readonly buffer Heat {
+layout(set = 0, binding = 5, std430) readonly buffer Across {
+    vec4 list[]; // twice what stands beside it
+} across;
+
+layout(set = 0, binding = 6, std430) readonly buffer Heat {
     vec2 list[]; // kelvin as the step ends
 } heat;
 
-layout(set = 0, binding = 6, std430) buffer Viscosities {
+layout(set = 0, binding = 7, std430) buffer Viscosities {
     float list[]; // over the melt's
 } viscosities;
 
@@ -29,12 +34,33 @@ const float YIELD = 13.00997; // log10 of the yield stress in Pa is this, less
 const float YIELD_PER_K = 0.0089;
 const float MOST_BITS = 60.0; // of a ratio that single precision holds
 
+// The root of twice the sum of the squares of all components of the mean.
+float strain_around(uint at) {
+    vec3 place_m = began_m(at);
+    vec3 diagonal = vec3(0.0);
+    vec3 beside = vec3(0.0);
+    float weights = 0.0;
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_at(place_m, x, z);
+            uint end = min(stretch.y, stretch.x + MOST);
+            for (uint i = stretch.x; i < end; i++) {
+                float weight = kernel(length(apart(place_m - began_m(i))) / flow.support_m);
+                diagonal += weight * along.list[i].xyz;
+                beside += weight * across.list[i].xyz;
+                weights += weight;
+            }
+        }
+    }
+    return sqrt(2.0 * dot(diagonal, diagonal) + dot(beside, beside)) / weights;
+}
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
-    float strain_per_s = change.list[at].w;
+    float strain_per_s = strain_around(at);
     float kelvin = heat.list[at].x;
     float fit = BITS * B_K * (1.0 / max(kelvin - C_K, COLDEST_K) - 1.0 / (flow.melt_k - C_K));
     float melt = exp2(min(fit, MOST_BITS));

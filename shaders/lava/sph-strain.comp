@@ -1,9 +1,8 @@
 #version 450
 
-// The rate of strain at a particle that viscosity leaves: the root of twice the sum of the squares of its components, from the
-// velocities that the equation of viscosity has been solved for. What the pressure adds to them afterwards shakes single
-// particles, and is no flow. Sums over particles are divided by what they are of a speed that grows by the place alone (Bonet and
-// Lok 1999), so that neither disorder nor a free surface changes a linear one's.
+// The rate of strain at a particle as the step begins, by the velocities that the last one ended with: those that gravity has been
+// added to and pressure not are squeezed against the floor, which is no flow. Sums over particles are divided by what they are of a
+// speed that grows by the place alone (Bonet and Lok 1999), so that neither disorder nor a free surface changes a linear one's.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -14,13 +13,17 @@ layout(local_size_x = 64) in;
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer From {
-    vec4 list[]; // metres per second
-} from;
+layout(set = 0, binding = 4, std430) readonly buffer Pushed {
+    vec4 list[]; // metres per second after gravity
+} pushed;
 
-layout(set = 0, binding = 5, std430) buffer Change {
-    vec4 list[]; // the rate of strain per second in the fourth component
-} change;
+layout(set = 0, binding = 5, std430) buffer Along {
+    vec4 list[]; // per second: the tensor's diagonal
+} along;
+
+layout(set = 0, binding = 6, std430) buffer Across {
+    vec4 list[]; // per second: twice what stands beside it, of y and z, z and x, x and y
+} across;
 
 // The speed's slope at a wall beyond which the speed goes on linearly through 0: over the speed, times h.
 float shear_beyond(float q) {
@@ -57,7 +60,7 @@ void main() {
         return;
     }
     vec3 place_m = began_m(at);
-    vec3 velocity = from.list[at].xyz;
+    vec3 pushed_m_s = pushed.list[at].xyz;
     // Slopes of the speed, times h, and what they come out as where every slope is 1.
     mat3 slopes = mat3(0.0);
     mat3 moment = mat3(0.0);
@@ -68,7 +71,7 @@ void main() {
             for (uint i = stretch.x; i < end; i++) {
                 vec3 way = apart(place_m - began_m(i)) / flow.support_m;
                 vec3 weight = flow.laplacian * slope(length(way)) * way;
-                slopes += outer(from.list[i].xyz - velocity, weight);
+                slopes += outer(pushed.list[i].xyz - pushed_m_s, weight);
                 moment -= outer(way, weight);
             }
         }
@@ -77,17 +80,15 @@ void main() {
     vec4 q = walls.sides_q;
     vec4 sides = vec4(shear_beyond(q.x), shear_beyond(q.y), shear_beyond(q.z), shear_beyond(q.w));
     float bed = shear_beyond(walls.bed_q);
+    vec3 velocity = pushed_m_s - flow.time_step_s * flow.gravity_m_s2;
     slopes += outer(velocity, vec3(sides.x - sides.y, 0.0, sides.z - sides.w) + bed * walls.up);
     vec4 moments = sides * q;
     moment += bed * walls.bed_q * outer(walls.up, walls.up);
     moment += mat3(vec3(moments.x + moments.y, 0.0, 0.0), vec3(0.0), vec3(0.0, 0.0, moments.z + moments.w));
-    slopes = slopes * inverse_of(moment);
-    // The rate of strain: its diagonal, and twice what stands beside it.
+    slopes = slopes * inverse_of(moment) * (1.0 / flow.support_m);
     vec3 by_x = slopes[0];
     vec3 by_y = slopes[1];
     vec3 by_z = slopes[2];
-    vec3 along = vec3(by_x.x, by_y.y, by_z.z);
-    vec3 across = vec3(by_y.x + by_x.y, by_z.y + by_y.z, by_x.z + by_z.x);
-    float strain_per_s = sqrt(2.0 * dot(along, along) + dot(across, across)) / flow.support_m;
-    change.list[at] = vec4(vec3(0.0), strain_per_s);
+    along.list[at] = vec4(by_x.x, by_y.y, by_z.z, 0.0);
+    across.list[at] = vec4(by_z.y + by_y.z, by_x.z + by_z.x, by_y.x + by_x.y, 0.0);
 }

@@ -28,7 +28,7 @@ const START: usize = 2;
 /// One position and one velocity texture, a texel for each particle.
 #[derive(Clone)]
 pub struct State {
-    /// Metres; of a fluid the rate of strain per second in alpha.
+    /// Metres.
     pub positions: Arc<ImageView>,
     /// Metres per second; of a fluid the temperature in kelvin in alpha.
     pub velocities: Arc<ImageView>,

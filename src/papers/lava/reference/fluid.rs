@@ -33,7 +33,7 @@ pub(super) struct Wall {
 }
 
 /// Wendland's kernel C2: 21 / (2 pi h^3) (1 - q)^4 (1 + 4 q).
-fn wendland(distance: f64, support: f64) -> f64 {
+pub(super) fn wendland(distance: f64, support: f64) -> f64 {
     let q = distance / support;
     if q >= 1.0 { 0.0 } else { 21.0 / (std::f64::consts::TAU * support.powi(3)) * (1.0 - q).powi(4) * (1.0 + 4.0 * q) }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::fluid::{Fluid, Wall, integral, wendland_slope};
+use super::fluid::{Fluid, Wall, integral, wendland, wendland_slope};
 
 /// Of the SI, W / (m^2 K^4).
 const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
@@ -106,10 +106,9 @@ impl Fluid {
         (heat.kelvin(enthalpy - lost), conducted)
     }
 
-    /// Rate of strain at a particle per second, the root of twice the sum of the squares of its components: exact of a speed that is
-    /// linear and 0 at walls, where there are particles on all sides. Also true where a little less or more would leave the sums over few
-    /// particles as they come.
-    pub fn strain_rate(&self, places: &[DVec3], speeds: &[DVec3], at: usize) -> (f64, bool) {
+    /// Rate of strain at a particle per second: exact of a speed that is linear and 0 at walls, where there are particles on all
+    /// sides. Also true where a little less or more would leave the sums over few particles as they come.
+    pub fn strain_rate(&self, places: &[DVec3], speeds: &[DVec3], at: usize) -> (DMat3, bool) {
         let (_, volume) = self.volumes();
         let (mut gradient, mut unit) = (DMat3::ZERO, DMat3::ZERO);
         for (i, &other) in places.iter().enumerate() {
@@ -132,9 +131,22 @@ impl Fluid {
         if mean > 0.1 && flatness > 0.05 {
             gradient *= unit.inverse();
         }
-        let strain = 0.5 * (gradient + gradient.transpose());
-        let squares = strain.to_cols_array().iter().map(|component| component * component).sum::<f64>();
-        ((2.0 * squares).sqrt(), (mean - 0.1).abs() < 1e-3 || (flatness - 0.05).abs() < 1e-3)
+        let is_close_call = (mean - 0.1).abs() < 1e-3 || (flatness - 0.05).abs() < 1e-3;
+        (0.5 * (gradient + gradient.transpose()), is_close_call)
+    }
+
+    /// The root of twice the sum of the squares of the components of the mean rate of strain around a particle, by the kernel. Also
+    /// true where one of them is a close call.
+    pub fn strain_around(&self, places: &[DVec3], strains: &[(DMat3, bool)], at: usize) -> (f64, bool) {
+        let (mut sum, mut weights, mut is_close_call) = (DMat3::ZERO, 0.0, false);
+        for (&place, &(strain, is_close)) in places.iter().zip(strains) {
+            let weight = wendland(self.apart(places[at], place).length(), self.support);
+            sum += strain * weight;
+            weights += weight;
+            is_close_call |= is_close && weight > 0.0;
+        }
+        let squares = sum.to_cols_array().iter().map(|component| component * component).sum::<f64>();
+        ((2.0 * squares).sqrt() / weights, is_close_call)
     }
 }
 

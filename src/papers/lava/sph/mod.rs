@@ -1,10 +1,10 @@
 //! Stage one as a viscous fluid (chapter 9, "Improved particle simulation"): smoothed particle hydrodynamics.
 //!
 //! ```text
-//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-heat ─► sph-rheology ─┐
+//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-heat ─► sph-strain ─┐
 //!   ┌──────────────────────────────────────────────────────────────────────────────────────────────────────────────────┘
-//!   └─► sph-viscosity ─► sph-strain ─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
-//!         `─ a few dozen times            `─ corrections ─´
+//!   └─► sph-rheology ─► sph-viscosity ─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
+//!                         `─ a few dozen times            `─ corrections ─´
 //! ```
 //!
 //! Pressure is that of position-based fluids (Macklin and Mueller 2013), which no step makes unstable; viscosity is implicit
@@ -144,10 +144,12 @@ pub struct Sph {
     pub rock: Rock,
 }
 
-/// Passes `sph-rheology` and `sph-strain`.
+/// Passes `sph-strain` and `sph-rheology`.
 struct Rheologic {
-    pass: Pass,
     strain: Pass,
+    pass: Pass,
+    /// Rates of strain per second by cells: the tensor's diagonal, and twice what stands beside it.
+    strains: [Arc<Buffer>; 2],
     viscosities: Arc<Buffer>,
 }
 
@@ -241,10 +243,11 @@ impl Sph {
         let rheology = match parameters.flow.heat.rheology {
             Rheology::Constant => None,
             Rheology::Basalt => {
+                let strains = [buffer("strains-along", 16)?, buffer("strains-across", 16)?];
                 let viscosities = buffer("viscosities", 4)?;
-                let pass = sph_rheology(shaders, &sort, [&change, &heat], &viscosities)?;
-                let strain = sph_strain(shaders, ground, &velocities[coefficients.len() % 2], &change)?;
-                Some(Rheologic { pass, strain, viscosities })
+                let strain = sph_strain(shaders, ground, &pushed, strains.each_ref())?;
+                let pass = sph_rheology(shaders, &sort, strains.each_ref(), [&heat, &viscosities])?;
+                Some(Rheologic { strain, pass, strains, viscosities })
             }
         };
         let corrections = parameters.flow.corrections;
@@ -263,7 +266,7 @@ impl Sph {
             |[from, to]: [usize; 2]| sph_correct(shaders, ground, [&predicted[from], &predicted[to]], &factors);
         let finish = |[from, to]: [usize; 2]| {
             let arrived = &predicted[corrections as usize % 2];
-            sph_finish(shaders, &sort, [arrived, &heat, &change], states[to], (&rock, [from, to]))
+            sph_finish(shaders, &sort, [arrived, &heat], states[to], (&rock, [from, to]))
         };
         Ok(Sph {
             inflow: [inflow(0)?, inflow(1)?],
@@ -315,13 +318,11 @@ impl Sph {
         run(frame, &self.forces[from], &constants)?;
         run(frame, &self.heat_pass, &constants)?;
         if let Some(rheology) = &self.rheology {
+            run(frame, &rheology.strain, &constants)?;
             run(frame, &rheology.pass, &constants)?;
         }
         for (at, &[kept, gained]) in self.coefficients.iter().enumerate() {
             run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, ..constants })?;
-        }
-        if let Some(rheology) = &self.rheology {
-            run(frame, &rheology.strain, &constants)?;
         }
         run(frame, &self.predict, &constants)?;
         for at in 0..self.corrections as usize {
@@ -339,6 +340,12 @@ impl Sph {
     /// Viscosities over the melt's by cells; `None` where it is one for all.
     pub fn viscosities(&self) -> Option<&Arc<Buffer>> {
         self.rheology.as_ref().map(|rheology| &rheology.viscosities)
+    }
+
+    /// Rates of strain per second by cells as the last step began, the tensor's diagonal and twice what stands beside it; `None` where
+    /// the viscosity does not follow them.
+    pub fn strains(&self) -> Option<&[Arc<Buffer>; 2]> {
+        self.rheology.as_ref().map(|rheology| &rheology.strains)
     }
 
     /// Places of the last step by cells, metres.

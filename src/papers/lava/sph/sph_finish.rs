@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from the last places, temperatures and rates of strain into a state; the rock is carried on from one state's into
+/// Makes the pass from the last places and temperatures into a state; the rock is carried on from one state's into
 /// another's.
 ///
 /// # Errors
@@ -16,7 +16,7 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 pub fn sph_finish(
     shaders: &ShaderLibrary,
     sort: &Sort,
-    [predicted, heat, change]: [&Arc<Buffer>; 3],
+    [predicted, heat]: [&Arc<Buffer>; 2],
     state: &State,
     (rock, [from, to]): (&Rock, [usize; 2]),
 ) -> Result<Pass, Error> {
@@ -24,7 +24,6 @@ pub fn sph_finish(
         .with("predicted", predicted)
         .with("items", &sort.items)
         .with("heat", heat)
-        .with("change", change)
         .with("positions", &state.positions)
         .with("velocities", &state.velocities)
         .with("carried_before", &rock.states[from])

@@ -8,8 +8,7 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from a state; `pushed` and `velocities` take the velocities, `change` is set to none, with
-/// the rates of strain that the state carries.
+/// Makes the pass from a state; `pushed` and `velocities` take the velocities, `change` is set to none.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -25,6 +24,5 @@ pub fn sph_forces(
         .with("pushed", pushed)
         .with("to", velocities)
         .with("change", change)
-        .with("positions", &state.positions)
         .build(shaders)
 }
