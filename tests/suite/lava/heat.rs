@@ -258,7 +258,7 @@ fn cooled(device: &Arc<Device>, heat: Heat) -> f64 {
 }
 
 /// Steady flow of a Bingham fluid down a slope, 12 particles deep: slower by its plug, whose viscosity is the largest there is.
-/// The rate of strain is exact of linear speeds alone, so that particles that are shaken strain the plug a little, and it creeps.
+/// A film without yield stress is 3.6 % slower than theory, this one 7 %.
 #[test]
 fn a_film_of_crust_has_a_bingham_fluids_speed() {
     gpu_test(|device| {
@@ -302,7 +302,7 @@ fn a_film_of_crust_has_a_bingham_fluids_speed() {
         };
         let (expected, newtonian) = (mean_of(yielding), mean_of(0.0));
         println!("mean speed {mean}, expected {expected}, without yield stress {newtonian}: {:.4}", mean / expected);
-        assert!((mean / expected - 1.0).abs() < 0.2, "{mean} {expected}");
+        assert!((mean / expected - 1.0).abs() < 0.1, "{mean} {expected}");
         assert!(expected < 0.75 * newtonian);
     });
 }
