@@ -58,9 +58,9 @@ fn maps(criterion: &mut Criterion) {
             bencher.iter(|| volcano(black_box(side), 1).expect("a valid side"));
         });
     }
-    // Another seed each time, so that the land itself is made.
+    // Another seed each time, so that the terrain itself is made.
     let mut seed = 0;
-    group.bench_function("make the land", |bencher| {
+    group.bench_function("make the terrain", |bencher| {
         bencher.iter(|| {
             seed += 1;
             volcano(2, seed).expect("a valid side")

@@ -1,4 +1,4 @@
-// Lines of equal height over the land's colours. Not the paper's.
+// Lines of equal height over the terrain's colours. Not the paper's.
 
 #include "terrain/base-normal.glsl"
 
@@ -6,7 +6,7 @@ const vec3 INK = vec3(0.08, 0.045, 0.02);
 // Every fifth line is a wide one.
 const float LINE_PX = 1.0;
 const float WIDE_LINE_PX = 2.0;
-// Land on which lines are farther apart lies on none, however near its height is to one's.
+// Terrain on which lines are farther apart lies on none, however near its height is to one's.
 const float MOST_APART_PX = 1.0e4;
 
 // The change of the height from a pixel to the next, metres: the next ray meets the plane of the surface in another place.
@@ -27,7 +27,7 @@ float line_at(float height_m, float interval_m, float width_px, float rise_m) {
     return apart_px < MOST_APART_PX ? line : 0.0;
 }
 
-// The land's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
+// The terrain's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
 vec3 under_drape(vec3 albedo, vec3 direction, vec4 hit, vec4 facing) {
     vec3 up = up_at(light.eye + hit.x * direction, facing.w);
     float height_m = facing.w - light.zero_m;

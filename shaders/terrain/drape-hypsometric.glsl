@@ -16,7 +16,7 @@ vec3 hypsometric_tint(float height_m) {
     return tint;
 }
 
-// The land's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
+// The terrain's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
 vec3 under_drape(vec3 albedo, vec3 direction, vec4 hit, vec4 facing) {
     return hypsometric_tint((facing.w - light.zero_m) / light.drape_scale);
 }

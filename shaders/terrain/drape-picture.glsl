@@ -14,7 +14,7 @@ vec3 draped(vec2 fraction) {
     return mix(north, south, uv.y);
 }
 
-// The land's colour under the drape, of its own colour.
+// The terrain's colour under the drape, of its own colour.
 vec3 under_drape(vec3 albedo, vec3 direction, vec4 hit, vec4 facing) {
     int map = (int(hit.w) >> 8) & 15;
     vec2 fraction = (hit.yz - light.drape_corner) / light.drape_cells;

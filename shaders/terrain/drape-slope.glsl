@@ -12,7 +12,7 @@ vec3 slope_tint(vec3 facing, vec3 up) {
     return mix(SLOPES[below], SLOPES[below + 1], place - float(below));
 }
 
-// The land's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
+// The terrain's colour under the drape, of its own colour; `facing` has the height over the base as its fourth number.
 vec3 under_drape(vec3 albedo, vec3 direction, vec4 hit, vec4 facing) {
     return slope_tint(facing.xyz, up_at(light.eye + hit.x * direction, facing.w));
 }

@@ -1,7 +1,7 @@
 // The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or from what is
 // draped over it, haze by distance. The paper names the pass and no model of light.
 
-// Before this file stand light.glsl and one for what is draped over the land.
+// Before this file stand light.glsl and one for what is draped over the terrain.
 
 #include "terrain/base-normal.glsl"
 

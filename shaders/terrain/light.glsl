@@ -20,7 +20,7 @@ layout(set = 0, binding = 0, std140) uniform Light {
     vec3 eye; // world, metres
     int draping;
     vec3 base_center; // of a curved base, world, metres
-    float drape_scale; // of what is drawn of the land: metres between lines of equal height, or the heights' exaggeration
+    float drape_scale; // of what is drawn of the terrain: metres between lines of equal height, or the heights' exaggeration
     vec3 base_axis; // its axis, a unit vector
     float zero_m; // where the maps' heights are 0, above the base
     vec2 base_radii; // off the axis and along it

@@ -3,7 +3,7 @@
 
 layout(set = 0, binding = 0, std140) uniform Terrain {
     vec3 eye; // in the map's frame
-    float pixel_nodes; // nodes that a pixel covers at a depth of 1 m; on steep land those over which it rises by a pixel
+    float pixel_nodes; // nodes that a pixel covers at a depth of 1 m; on steep terrain those over which it rises by a pixel
     vec3 corner_direction; // to the middle of pixel (0, 0), for 1 m of depth
     float near_m; // near plane of what is rasterised
     vec3 right_step; // the direction's change from a pixel to the next on the right

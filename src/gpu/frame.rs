@@ -38,7 +38,7 @@ pub struct Frame<'a> {
     pub(super) recording_ms: f64,
     /// Set when the frame is to be given up after the submission that executes.
     pub(super) interrupted: Option<&'a AtomicBool>,
-    /// Work of this submission, as [`Frame::make_room`] was told.
+    /// Work of this submission, as [`Frame::reserve_work`] was told.
     pub(super) work: f64,
     /// The pass that was recorded last in this submission, as an index into the sample's passes.
     pub(super) last: Option<usize>,
@@ -139,13 +139,13 @@ impl Frame<'_> {
         self.go_on()
     }
 
-    /// Makes room for a dispatch of `pass`: where this submission would hold more `work` than `most`, what is recorded is
+    /// Reserves `work` of this submission for a dispatch of `pass`: where it would hold more than `most`, what is recorded is
     /// submitted first and waited for. A frame of hours is many submissions then, and can be given up between them. Both are
     /// invocations, or turns of their loops.
     ///
     /// # Errors
     /// Those of [`Frame::wait_for`].
-    pub fn make_room(&mut self, pass: &Pass, work: f64, most: f64) -> Result<(), Error> {
+    pub fn reserve_work(&mut self, pass: &Pass, work: f64, most: f64) -> Result<(), Error> {
         if self.work > 0.0 && self.work + work > most {
             self.wait_for(pass)?;
         }

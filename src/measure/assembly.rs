@@ -74,7 +74,7 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
     if !untimed.is_empty() {
         let names = untimed.join(", ");
         warnings.push(format!(
-            "GPU times of {names} are absent: a frame has more calls than there are time stamps, or runs longer than they count"
+            "GPU times of {names} are absent: a frame has more calls than there are timestamps, or runs longer than they count"
         ));
     }
     if !uncounted.is_empty() {

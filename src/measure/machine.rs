@@ -160,7 +160,7 @@ impl Machine {
             warnings.push(format!("LP_NUM_THREADS{what}: the driver takes as many threads as it likes"));
         }
         if self.device.physical().queue.is_none_or(|(_, bits)| bits == 0) {
-            warnings.push("the device has no time stamps: GPU times are absent".to_owned());
+            warnings.push("the device has no timestamps: GPU times are absent".to_owned());
         }
         let physical = self.device.physical();
         if !physical.has(Feature::PipelineStatistics) {

@@ -165,7 +165,7 @@ pub struct CompiledPass {
     pub compiler: String,
     /// Reason why another's binaries ran in some stage; absent where none did.
     pub fallback: Option<String>,
-    /// Time of the pass on the device; absent without time stamps.
+    /// Time of the pass on the device; absent without timestamps.
     pub gpu_ms: Option<Summary>,
     /// The binaries that ran.
     pub binaries: Vec<ShaderBinary>,

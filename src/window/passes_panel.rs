@@ -36,14 +36,14 @@ fn show_measuring(ui: &mut Ui, face: &mut Interface) {
         let mut has_times = face.measure.times > 0;
         let mut has_counters = face.measure.counters;
         let times = ui.checkbox(&mut has_times, "times").on_hover_text(
-            "Stamped frames are drawn for the times, after each change and while the clock plays; they are not shown, and \
+            "Timestamped frames are drawn for the times, after each change and while the clock plays; they are not shown, and \
              no frame that draws this window is timed (M)",
         );
         let counters = ui.checkbox(&mut has_counters, "counters").on_hover_text("Counted frames are drawn as well");
         let mut samples = face.layout.samples;
         let count = ui
             .add_enabled(has_times, egui::DragValue::new(&mut samples).range(1..=100).prefix("median of "))
-            .on_hover_text("Stamped frames that each median is taken of: the last ones");
+            .on_hover_text("Timestamped frames that each median is taken of: the last ones");
         face.layout.samples = samples;
         if times.changed() || counters.changed() || count.changed() {
             let times = if has_times { samples } else { 0 };
@@ -96,7 +96,7 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             head(ui, "A ms", "GPU and host time of the first side");
             head(ui, "B ms", "GPU and host time of the second side's pass of the same name");
         } else {
-            head(ui, "gpu ms", "Between its stamps: median of the last stamped frames");
+            head(ui, "gpu ms", "Between its timestamps: median of the last timestamped frames");
             head(ui, "host ms", "Host work that the method needs");
             head(ui, "wait ms", "Waiting for what the method reads back");
         }
@@ -207,11 +207,11 @@ fn show_sum(ui: &mut Ui, face: &mut Interface) {
         let sum = side.passes.iter().filter_map(|pass| pass.gpu_ms).fold(0.0, |sum, ms| sum + ms);
         let host = side.passes.iter().filter_map(|pass| pass.host_ms).fold(0.0, |sum, ms| sum + ms);
         let name = if face.session.side_count() > 1 { ["A: ", "B: "][index.min(1)] } else { "" };
-        let frame = side.frame_ms.map(|ms| format!(", a frame without stamps {ms:.2} ms")).unwrap_or_default();
+        let frame = side.frame_ms.map(|ms| format!(", a frame without timestamps {ms:.2} ms")).unwrap_or_default();
         ui.label(format!("{name}GPU {sum:.2} ms, host {host:.2} ms{frame}; median of {} frames", side.samples));
     }
     if face.measure.times > 0 && face.session.times.iter().all(|side| side.samples == 0) {
-        ui.weak("The first stamped frames are being drawn.");
+        ui.weak("The first timestamped frames are being drawn.");
     }
 }
 

@@ -18,7 +18,7 @@ const CAPTION: f32 = 12.0;
 pub fn show(ui: &mut Ui, face: &mut Interface) {
     ui.horizontal(|ui| {
         ui.toggle_value(&mut face.is_plot_paused, "Hold").on_hover_text("The plots stay as they are");
-        ui.weak("the last 3 minutes; frames without stamps left, passes by stamped frames right");
+        ui.weak("the last 3 minutes; frames without timestamps left, passes by timestamped frames right");
     });
     let held = ui.data_mut(|data| data.get_temp::<Instant>(ui.id().with("held")));
     let now = match (face.is_plot_paused, held) {

@@ -226,7 +226,7 @@ pub struct PassComparison {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Clock {
-    /// Time stamps of the device.
+    /// Timestamps of the device.
     Gpu,
     /// Work of the host, without waiting.
     Host,

@@ -28,7 +28,7 @@ pub fn of_runs(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) 
     metrics.collect()
 }
 
-/// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without stamps.
+/// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without timestamps.
 fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) -> Result<Vec<Option<f64>>, Error> {
     const SAMPLES: usize = 5;
     let mut times = vec![Vec::with_capacity(SAMPLES); measured.len()];

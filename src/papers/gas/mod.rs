@@ -10,6 +10,7 @@
 //! A picture whose lists no buffer of the device holds is done in bands of rows, one after the other.
 
 mod a_buffer;
+mod alternatives;
 mod axes;
 mod band;
 mod blocks;
@@ -45,7 +46,6 @@ mod sort;
 mod tiles;
 mod view;
 mod volume;
-mod ways;
 
 use std::ops::Range;
 use std::sync::Arc;

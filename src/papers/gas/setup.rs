@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
+use super::alternatives::Alternatives;
 use super::axes;
 use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
@@ -30,7 +31,6 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
-use crate::papers::gas::ways::Ways;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Light, promised_triangles};
@@ -50,8 +50,8 @@ pub struct Setup {
     pub layers: u32,
     /// Of each layer, 0 to 1.
     pub layer_opacity: f32,
-    /// The ways to lists and densities, which a bench measures in turn.
-    pub ways: Ways,
+    /// Methods of lists, rays and densities, which a bench measures in turn.
+    pub alternatives: Alternatives,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
     /// The preset, as the record names it.
@@ -88,7 +88,7 @@ impl Setup {
             surface_triangles: None,
             layers: 0,
             layer_opacity: 1.0,
-            ways: Ways::default(),
+            alternatives: Alternatives::default(),
             crease_deg: CREASE_DEG,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
@@ -136,7 +136,7 @@ impl Setup {
 
     /// Adds the volumes and sets their numbers and the lights.
     fn apply(&mut self, given: &Given) -> Result<(), Error> {
-        self.ways.apply(&mut self.parameters);
+        self.alternatives.apply(&mut self.parameters);
         let all = &mut self.parameters.volumes;
         let first = all.first().copied().unwrap_or_else(default_volume);
         all.extend(self.placements.iter().map(|&Placement { shape, center, half_extent_m }| model::Volume {
@@ -200,7 +200,7 @@ impl Default for Setup {
     }
 }
 
-/// The passes that surfaces take, by every way to their lists.
+/// The passes that surfaces take, by every method of their lists.
 pub(super) const LIST_PASSES: [&str; 8] =
     ["tiles-empty", "tiles-count", "tiles-sum", "tiles-fill", "tiles-pixels", "fragments", "sort", "resolve"];
 
@@ -223,13 +223,13 @@ impl Study for Setup {
     /// Checks the parameters, models the scene's surfaces and loads the user's.
     fn load(&self) -> Result<Scene, Error> {
         volumes::check_used(&self.given, &self.parameters.volumes)?;
-        self.ways.check_used(&self.given, &self.parameters.volumes)?;
+        self.alternatives.check_used(&self.given, &self.parameters.volumes)?;
         parameter::check(&Reading::declared(), &self.reading)?;
         if self.given.has("white-temperature") && self.reading.temperature.is_none() {
             let message = "`white-temperature`: no file has temperatures: give `volume-temperature`";
             return Err(Error::Input(message.to_owned()));
         }
-        let has_cache = self.ways.density_caches.iter().any(|cache| cache.0.is_some());
+        let has_cache = self.alternatives.density_caches.iter().any(|cache| cache.0.is_some());
         if has_cache && self.reading.temperature.is_some() {
             let message = "`density-cache`: a table of densities knows no temperatures: leave out `volume-temperature`";
             return Err(Error::Input(message.to_owned()));
@@ -299,7 +299,7 @@ impl Study for Setup {
             ("background", json!(p.background.to_array())),
             ("camera", config::camera(&p.camera)),
         ]));
-        config.extend(p.ways_config());
+        config.extend(p.alternative_config());
         if self.layers > 0 {
             config.insert("layers".to_owned(), json!(self.layers));
             config.insert("layer_opacity".to_owned(), json!(self.layer_opacity));
@@ -309,7 +309,7 @@ impl Study for Setup {
 
     fn summary(&self) -> String {
         let Parameters { first_frame, .. } = &self.parameters;
-        format!("{}, frame {first_frame}, {}", self.scene.as_str(), self.parameters.ways_text())
+        format!("{}, frame {first_frame}, {}", self.scene.as_str(), self.parameters.alternative_text())
     }
 
     fn metrics(
@@ -408,10 +408,11 @@ impl Study for Setup {
         let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
         let numbers =
             Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
-        let ways = Ways::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.ways, |s| &mut s.ways));
+        let alternatives =
+            Alternatives::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.alternatives, |s| &mut s.alternatives));
         objects
             .into_iter()
-            .chain(ways)
+            .chain(alternatives)
             .chain(files)
             .chain(gases)
             .chain([of_gases])
@@ -460,18 +461,18 @@ impl Study for Setup {
     }
 
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
-        self.ways.check_distinct()?;
+        self.alternatives.check_distinct()?;
         self.given = given.clone();
         self.apply(given)
     }
 
     fn alternatives(&self) -> Vec<Self> {
-        let of = |ways: Ways| {
-            let mut alone = Setup { ways, ..self.clone() };
-            alone.ways.apply(&mut alone.parameters);
+        let of = |alternatives: Alternatives| {
+            let mut alone = Setup { alternatives, ..self.clone() };
+            alone.alternatives.apply(&mut alone.parameters);
             alone
         };
-        self.ways.alone().into_iter().map(of).collect()
+        self.alternatives.alone().into_iter().map(of).collect()
     }
 
     /// The figure's; of those without volumes, as figure 4, `table` where the user adds some.

@@ -22,7 +22,7 @@ host_block! {
     pub struct TerrainBlock {
         /// The camera, in the map's frame.
         pub eye: Vec3,
-        /// Nodes that a pixel covers at a depth of 1 m; on steep land those over which it rises by a pixel.
+        /// Nodes that a pixel covers at a depth of 1 m; on steep terrain those over which it rises by a pixel.
         pub pixel_nodes: f32,
         /// To the middle of pixel (0, 0), for 1 m of depth.
         pub corner_direction: Vec3,

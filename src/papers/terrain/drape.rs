@@ -1,10 +1,10 @@
-//! The drape over the land in place of its colours.
+//! The drape over the terrain in place of its colours.
 
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::measure::ParameterError;
 
-/// A picture over the first map, or what is drawn of the land itself.
+/// A picture over the first map, or what is drawn of the terrain itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drape {
     width: u32,
@@ -13,14 +13,14 @@ pub struct Drape {
     draping: Draping,
 }
 
-/// The place of a draped picture; what else lies over the land of all maps.
+/// The place of a draped picture; what else lies over the terrain of all maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Draping {
     /// Its corners on the map's.
     WholeMap,
     /// In columns and rows of the map's samples: its north-west corner, and from it to the south-east one.
     Placed { corner: Vec2, cells: Vec2 },
-    /// Lines of equal height over the land's colours, so many metres apart, every fifth a wide one.
+    /// Lines of equal height over the terrain's colours, so many metres apart, every fifth a wide one.
     Contours { interval_m: f32 },
     /// Colours by the angle between the surface that is lit and the base.
     Slope,
@@ -50,7 +50,7 @@ impl Drape {
         Drape { draping: Draping::Placed { corner, cells }, ..self }
     }
 
-    /// No picture: what is drawn of the land itself. Numbers are finite and above 0.
+    /// No picture: what is drawn of the terrain itself. Numbers are finite and above 0.
     pub fn of_terrain(draping: Draping) -> Self {
         Drape { draping, ..Self::white() }
     }

@@ -62,7 +62,7 @@ pub struct Ground {
     pub highest: f64,
     /// The base's h.
     pub base: f64,
-    /// Height of a pixel's footprint on the land over its width, at least 1: a footprint as wide as a pixel is then higher
+    /// Height of a pixel's footprint on the terrain over its width, at least 1: a footprint as wide as a pixel is then higher
     /// than one.
     pub steepness: f64,
     /// None over a plane.
@@ -78,10 +78,10 @@ pub const REPEATED: u32 = 2;
 /// The most by which the columns may miss a whole turn, in nodes.
 const WHOLE_TURN: f64 = 1e-3;
 
-/// Steep land of a map, over its slope's root of the mean square; of maps steeper than one to one.
+/// Steep terrain of a map, over its slope's root of the mean square; of maps steeper than one to one.
 const STEEP: f64 = 2.0;
 
-/// The slope of a map's steep land, metres for a metre, at least 1.
+/// The slope of a map's steep terrain, metres for a metre, at least 1.
 fn steepness(map: &HeightMap) -> f64 {
     f64::max(STEEP * map.slope() - 1.0, 1.0)
 }

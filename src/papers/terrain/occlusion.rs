@@ -1,4 +1,4 @@
-//! The pass `occlusion` (optional; no part of the paper): the shadows that polygon objects cast on the land, by rays to the sun
+//! The pass `occlusion` (optional; no part of the paper): the shadows that polygon objects cast on the terrain, by rays to the sun
 //! through their triangles. The pass `object-occlusion` is the same on objects.
 
 use std::sync::Arc;

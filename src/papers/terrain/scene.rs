@@ -37,7 +37,7 @@ pub struct Inputs<'a> {
     pub maps: &'a [MapInput],
     /// Polygon objects in the world, metres: x east, y up from the base, z south.
     pub objects: &'a [Mesh],
-    /// A picture over the first map, or what is drawn of the land itself.
+    /// A picture over the first map, or what is drawn of the terrain itself.
     pub drape: Option<&'a Drape>,
     /// Of each map, in their order, where the maps have no samples of their own; else none. For [`Variant::TiledCompute`] alone.
     pub tiles: &'a [Arc<TileFile>],
@@ -60,7 +60,7 @@ pub struct Scene {
     pub range_m: (f64, f64),
     /// The maps' height at which the base lies, metres.
     pub base_level_m: f64,
-    /// The drape over the land, if there is one.
+    /// The drape over the terrain, if there is one.
     pub draping: Option<Draping>,
     /// Of each map where none is held.
     pub tiles: Vec<Arc<TileFile>>,
@@ -140,7 +140,7 @@ pub struct DeviceScene {
     pub light: Arc<Buffer>,
     /// The draped picture; a white texel without one.
     pub drape: Arc<ImageView>,
-    /// The drape over the land, if there is one.
+    /// The drape over the terrain, if there is one.
     pub draping: Option<Draping>,
     /// A single texel, of the sky: what is found before the first map.
     pub no_hits: Arc<ImageView>,

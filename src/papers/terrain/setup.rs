@@ -44,7 +44,7 @@ pub struct Setup {
     pub objects: Vec<ObjectSource>,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
-    /// The drape over the land in place of the colour ramp.
+    /// The drape over the terrain in place of the colour ramp.
     pub drape: Option<DrapeSource>,
     /// Heights for the samples that maps leave void.
     pub voids: Voids,
@@ -99,7 +99,7 @@ pub struct Scene {
     pub maps: Vec<MapInput>,
     /// Polygon objects in the maps' frame.
     pub objects: Vec<Mesh>,
-    /// The drape over the land, loaded.
+    /// The drape over the terrain, loaded.
     pub drape: Option<Drape>,
     /// Of each map where none is held.
     pub tiles: Vec<Arc<TileFile>>,
@@ -400,7 +400,7 @@ impl Study for Setup {
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("drape", field!(Setup.drape))
                 .help(
-                    "Over the land in place of the colour ramp: a picture over the first map, PNG, north up, where a world file \
+                    "Over the terrain in place of the colour ramp: a picture over the first map, PNG, north up, where a world file \
                      beside it (.pgw or .wld) says, in the map's own coordinates, or without one its corners on the map's; \
                      contours, lines of equal height over the ramp, M metres apart or at most 25 of them, every fifth wide; slope, \
                      colours by the angle of the surface, 0 to 60 degrees; hypsometric, an atlas's colours by height, blue below 0 m",

@@ -1,4 +1,4 @@
-//! Drapes that are drawn of the land itself, as `shaders/terrain/drape-*.glsl` have them: lines of equal height, colours by slope and by
+//! Drapes that are drawn of the terrain itself, as `shaders/terrain/drape-*.glsl` have them: lines of equal height, colours by slope and by
 //! height.
 
 use glam::{Vec2, Vec3, Vec4};
@@ -10,7 +10,7 @@ const INK: Vec3 = Vec3::new(0.08, 0.045, 0.02);
 /// Every fifth line is a wide one.
 const LINE_PX: f32 = 1.0;
 const WIDE_LINE_PX: f32 = 2.0;
-/// Land on which lines are farther apart lies on none, however near its height is to one's.
+/// Terrain on which lines are farther apart lies on none, however near its height is to one's.
 const MOST_APART_PX: f32 = 1e4;
 
 /// At 0, 15, 30, 45 and 60 degrees, linear: level, grassy, loose, rocky, sheer.
@@ -36,7 +36,7 @@ const HYPSOMETRIC: [(f32, Vec3); 10] = [
     (5000.0, Vec3::new(0.56, 0.56, 0.57)),
 ];
 
-/// The land's colour under such a drape; `facing` is the normal and the height over the base.
+/// The terrain's colour under such a drape; `facing` is the normal and the height over the base.
 pub fn tinted(
     light: &LightBlock,
     draping: Draping,

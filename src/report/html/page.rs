@@ -57,7 +57,7 @@ pub fn page(contents: &Contents) -> String {
                 }
                 footer {
                     p { "Times are medians in milliseconds: GPU times of a pass between two full barriers, frames on the host's clock
-                        without time stamps. Hold the pointer over a number for all its digits; a click on a heading sorts." }
+                        without timestamps. Hold the pointer over a number for all its digits; a click on a heading sorts." }
                 }
                 script { (PreEscaped(SCRIPT)) }
             }

@@ -57,8 +57,8 @@ pub struct Frame {
 pub struct SideFrame {
     /// `None` where no pass so far has written it.
     pub picture: Option<Picture>,
-    /// Milliseconds from the start of recording to the last fence, without stamps; on a GPU with what lies between its passes,
-    /// which are submitted one by one, unless times or counters are wanted.
+    /// Milliseconds from the start of recording to the last fence, without timestamps; on a GPU with what lies between its
+    /// passes, which are submitted one by one, unless times or counters are wanted.
     pub frame_ms: f64,
     /// Names of the targets that passes of this frame have written.
     pub written: Vec<String>,
@@ -139,9 +139,9 @@ pub struct Thumbnail {
 /// Times of a side, medians of the last samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SideTimes {
-    /// Samples that stamps gave.
+    /// Samples that timestamps gave.
     pub samples: u32,
-    /// Milliseconds of a frame without stamps, on the host's clock.
+    /// Milliseconds of a frame without timestamps, on the host's clock.
     pub frame_ms: Option<f64>,
     /// Of each pass, in the order of [`SideBuilt::passes`](super::SideBuilt::passes).
     pub passes: Vec<PassTimes>,
@@ -152,7 +152,7 @@ pub struct SideTimes {
 pub struct PassTimes {
     /// The pass.
     pub name: String,
-    /// Milliseconds between its stamps.
+    /// Milliseconds between its timestamps.
     pub gpu_ms: Option<f64>,
     /// Milliseconds of host work without waiting.
     pub host_ms: Option<f64>,

@@ -12,7 +12,7 @@ use crate::window::protocol::{Counters, PassTimes, SideTimes};
 #[derive(Default)]
 pub struct Times {
     frames: Last,
-    stamped: u32,
+    timestamped: u32,
     plain: u32,
     is_counted: bool,
     passes: Vec<Pass>,
@@ -49,9 +49,9 @@ impl Last {
 impl Times {
     /// The next mode to record a frame in, of those that still lack samples; `None` when nothing does.
     pub fn wanted(&self, samples: u32, counters: bool) -> Option<Mode> {
-        if self.plain < samples && self.plain <= self.stamped {
+        if self.plain < samples && self.plain <= self.timestamped {
             Some(Mode::Plain)
-        } else if self.stamped < samples {
+        } else if self.timestamped < samples {
             Some(Mode::Timestamped)
         } else {
             (counters && !self.is_counted).then_some(Mode::Counted)
@@ -60,7 +60,7 @@ impl Times {
 
     /// Frames that were taken.
     pub fn taken(&self) -> u32 {
-        self.plain + self.stamped
+        self.plain + self.timestamped
     }
 
     /// The next mode of frames that go on as long as the clock plays.
@@ -78,7 +78,7 @@ impl Times {
                 self.plain += 1;
                 self.frames.push(sample.frame_ms, most);
             }
-            Mode::Timestamped => self.stamped += 1,
+            Mode::Timestamped => self.timestamped += 1,
             Mode::Counted => self.is_counted = true,
             Mode::Bracketed => {}
         }
@@ -129,10 +129,10 @@ impl Times {
         let sum_ms: f64 = passes.iter().map(time_ms).sum();
         for pass in &mut passes {
             // Before the first timestamps, host work is not all that there is.
-            let is_timed = self.stamped > 0 && pass.gpu_ms.or(pass.host_ms).is_some() && sum_ms > 0.0;
+            let is_timed = self.timestamped > 0 && pass.gpu_ms.or(pass.host_ms).is_some() && sum_ms > 0.0;
             pass.share = is_timed.then(|| time_ms(pass) / sum_ms);
         }
-        SideTimes { samples: self.stamped.min(most), frame_ms: self.frames.median(), passes }
+        SideTimes { samples: self.timestamped.min(most), frame_ms: self.frames.median(), passes }
     }
 }
 

@@ -31,7 +31,7 @@ fn features() -> Vec<String> {
 fn said(paper: &str, feature: &str) -> Option<&'static str> {
     match (paper, feature) {
         ("lava" | "gas", "geometry-shader") => Some("no geometry stage"),
-        (_, "timestamps") => Some("no time stamps"),
+        (_, "timestamps") => Some("no timestamps"),
         (_, "pipeline-statistics") => Some("no pipeline statistics"),
         (_, "precise-occlusion") => Some("no exact counts of samples"),
         _ => None,
@@ -135,7 +135,7 @@ fn narrow_time_stamps_are_read_as_such() {
     }
 }
 
-/// Stamps of 12 bits come round every 4 microseconds here, which no frame of these keeps to.
+/// Timestamps of 12 bits come round every 4 microseconds here, which no frame of these keeps to.
 #[test]
 fn times_that_time_stamps_cannot_tell_are_absent_and_said_so() {
     let layer = Layer::new();

@@ -99,7 +99,7 @@ fn a_frame_is_given_up_between_submissions_alone() {
         // Room for both is no reason to wait.
         let record = |frame: &mut Frame<'_>, most: f64| -> Result<(), Error> {
             for value in [1.0, 2.0] {
-                frame.make_room(&fill, 3.0, most)?;
+                frame.reserve_work(&fill, 3.0, most)?;
                 paint(frame, &fill, value)?;
             }
             Ok(())

@@ -132,15 +132,15 @@ impl Model {
         let seed = parameters.noise_seed();
         let mean_edge = mean_edge(positions, &triangles);
         let touching = touching::touching(positions, &triangles, mean_edge);
-        let squared_ways: Vec<f64> = match parameters.heat() {
+        let squared_distances: Vec<f64> = match parameters.heat() {
             Heat::Air => positions.iter().map(|&position| boundary::straight(position, &sources)).collect(),
             Heat::Surface => {
                 let lean = surface_heat::lean(parameters.climb, parameters.wind);
-                let ways = surface_heat::ways((positions, &triangles), &touching, &sources, lean);
-                ways.into_iter().map(|way| way * way).collect()
+                let heated = surface_heat::distances((positions, &triangles), &touching, &sources, lean);
+                heated.into_iter().map(|distance| distance * distance).collect()
             }
         };
-        let reached = positions.iter().zip(squared_ways);
+        let reached = positions.iter().zip(squared_distances);
         let mut distances: Vec<f32> =
             reached.map(|(&p, squared)| boundary::distance(p, squared, parameters.psi, seed) as f32).collect();
         let mut substances = Vec::new();

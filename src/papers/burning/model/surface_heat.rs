@@ -93,7 +93,7 @@ impl Air {
 /// Length of the fire's way to each vertex, diagonals; what comes along `lean` counts 1 / (1 + its length) of its own.
 ///
 /// Heat passes between the vertices of each pair of `touching`, of separate parts, too.
-pub fn ways(
+pub fn distances(
     (positions, triangles): (&[Vec3], &[[u32; 3]]),
     touching: &[[u32; 2]],
     sources: &[Vec3],
@@ -105,11 +105,11 @@ pub fn ways(
     let by_air = |vertex: usize| {
         sources.iter().map(|source| THROUGH_AIR * straight(vertex, source)).fold(f64::INFINITY, f64::min)
     };
-    let mut ways: Vec<f64> = vertices.clone().map(by_air).collect();
+    let mut distances: Vec<f64> = vertices.clone().map(by_air).collect();
     // The fire is lit where the surface is nearest to a source.
     for source in sources {
         if let Some(nearest) = vertices.clone().min_by(|a, b| straight(*a, source).total_cmp(&straight(*b, source))) {
-            ways[nearest] = ways[nearest].min(straight(nearest, source));
+            distances[nearest] = distances[nearest].min(straight(nearest, source));
         }
     }
     let incidence = Incidence::new(positions.len(), triangles);
@@ -123,21 +123,21 @@ pub fn ways(
     let mut in_air = vec![(f64::INFINITY, 0); air.count()];
     // Ways are not negative, so that their bits are in their order.
     let mut open: BinaryHeap<Reverse<(u64, usize)>> =
-        vertices.map(|vertex| Reverse((ways[vertex].to_bits(), vertex))).collect();
+        vertices.map(|vertex| Reverse((distances[vertex].to_bits(), vertex))).collect();
     while let Some(Reverse((bits, node))) = open.pop() {
         let mut reached: Vec<(usize, f64)> = Vec::new();
         let from = match node.checked_sub(positions.len()) {
-            None if f64::from_bits(bits) > ways[node] => continue,
+            None if f64::from_bits(bits) > distances[node] => continue,
             None => {
-                reached.extend(along_surface(node, &ways, (positions, triangles), &incidence, lean));
+                reached.extend(along_surface(node, &distances, (positions, triangles), &incidence, lean));
                 let over = beside.get(&node).into_iter().flatten();
-                reached.extend(over.map(|&to| (to, ways[node] + length(place(node), place(to), lean))));
+                reached.extend(over.map(|&to| (to, distances[node] + length(place(node), place(to), lean))));
                 (node, vec![air.voxel_of(place(node))])
             }
             Some(voxel) if f64::from_bits(bits) > in_air[voxel].0 => continue,
             Some(voxel) => {
                 let from = in_air[voxel].1;
-                let through = |to: DVec3| ways[from] + THROUGH_AIR * length(place(from), to, lean);
+                let through = |to: DVec3| distances[from] + THROUGH_AIR * length(place(from), to, lean);
                 let inside = air.inside.of(voxel as u32).iter().map(|to| *to as usize);
                 reached.extend(inside.map(|to| (to, through(place(to)))));
                 (from, air.around(voxel).collect())
@@ -145,26 +145,26 @@ pub fn ways(
         };
         let (from, voxels) = from;
         for voxel in voxels {
-            let way = ways[from] + THROUGH_AIR * length(place(from), air.middle(voxel), lean);
-            if way < CLOSER * in_air[voxel].0 {
-                in_air[voxel] = (way, from);
-                open.push(Reverse((way.to_bits(), positions.len() + voxel)));
+            let distance = distances[from] + THROUGH_AIR * length(place(from), air.middle(voxel), lean);
+            if distance < CLOSER * in_air[voxel].0 {
+                in_air[voxel] = (distance, from);
+                open.push(Reverse((distance.to_bits(), positions.len() + voxel)));
             }
         }
-        for (to, way) in reached {
-            if way < CLOSER * ways[to] {
-                ways[to] = way;
-                open.push(Reverse((way.to_bits(), to)));
+        for (to, distance) in reached {
+            if distance < CLOSER * distances[to] {
+                distances[to] = distance;
+                open.push(Reverse((distance.to_bits(), to)));
             }
         }
     }
-    ways
+    distances
 }
 
-/// The ways on from a vertex to the corners of its triangles.
+/// The distances on from a vertex to the corners of its triangles.
 fn along_surface(
     vertex: usize,
-    ways: &[f64],
+    distances: &[f64],
     (positions, triangles): (&[Vec3], &[[u32; 3]]),
     incidence: &Incidence,
     lean: DVec3,
@@ -175,7 +175,7 @@ fn along_surface(
         let [first, second] = [1, 2].map(|step| corners[(*entry as usize % 4 + step) % 3]);
         [(first, second), (second, first)].map(|(to, other)| {
             let ends = [vertex, other];
-            (to, across(ends.map(place), ends.map(|end| ways[end]), place(to), lean))
+            (to, across(ends.map(place), ends.map(|end| distances[end]), place(to), lean))
         })
     };
     incidence.of(vertex as u32).iter().flat_map(of_triangle).collect()
@@ -188,15 +188,15 @@ fn length(from: DVec3, to: DVec3, lean: DVec3) -> f64 {
     if length == 0.0 { 0.0 } else { length / (1.0 + lean.dot(way).max(0.0) / length) }
 }
 
-/// Of the way to a corner of a triangle over the opposite edge, along which ways are linear: the least of those through
+/// Of the way to a corner of a triangle over the opposite edge, along which distances are linear: the least of those through
 /// some of its places, and through the one that a plane front would come from.
-fn across(ends: [DVec3; 2], ways: [f64; 2], to: DVec3, lean: DVec3) -> f64 {
+fn across(ends: [DVec3; 2], distances: [f64; 2], to: DVec3, lean: DVec3) -> f64 {
     let edge = ends[1] - ends[0];
     let edge_length = edge.length();
-    let by = |share: f64| ways[0] + share * (ways[1] - ways[0]) + length(ends[0] + share * edge, to, lean);
-    // By quarters too: where ways that rise are shorter, no formula has the least.
+    let by = |share: f64| distances[0] + share * (distances[1] - distances[0]) + length(ends[0] + share * edge, to, lean);
+    // By quarters too: where distances that rise are shorter, no formula has the least.
     let least = [0.0, 0.25, 0.5, 0.75].map(by).into_iter().fold(f64::INFINITY, f64::min);
-    let slope = (ways[1] - ways[0]) / edge_length;
+    let slope = (distances[1] - distances[0]) / edge_length;
     if !slope.is_finite() || slope.abs() >= 1.0 {
         return least;
     }
@@ -225,18 +225,18 @@ mod tests {
     fn on_a_sheet_the_way_is_straight() {
         let (positions, triangles) = sheet(41);
         let source = Vec3::new(0.5, 0.5, 0.0);
-        let ways = ways((&positions, &triangles), &[], &[source], DVec3::ZERO);
-        for (way, place) in ways.iter().zip(&positions) {
+        let distances = distances((&positions, &triangles), &[], &[source], DVec3::ZERO);
+        for (distance, place) in distances.iter().zip(&positions) {
             let straight = f64::from(place.distance(source));
-            assert!(*way >= 0.999 * straight && *way < straight + 1.1 / 40.0, "{place}: {way}, {straight}");
+            assert!(*distance >= 0.999 * straight && *distance < straight + 1.1 / 40.0, "{place}: {distance}, {straight}");
         }
     }
 
     #[test]
     fn it_climbs() {
         let (positions, triangles) = sheet(41);
-        let ways = ways((&positions, &triangles), &[], &[Vec3::new(0.5, 0.5, 0.0)], lean(1.0, Vec3::ZERO));
-        let at = |x: usize, y: usize| ways[41 * y + x];
+        let distances = distances((&positions, &triangles), &[], &[Vec3::new(0.5, 0.5, 0.0)], lean(1.0, Vec3::ZERO));
+        let at = |x: usize, y: usize| distances[41 * y + x];
         let [up, down, slanting] = [at(20, 40), at(20, 0), at(40, 40)];
         assert!((up - 0.25).abs() < 1e-6 && (down - 0.5).abs() < 1e-6, "{up} {down}");
         let straight = 0.5_f64.sqrt() / (1.0 + 0.5_f64.sqrt());
@@ -247,8 +247,8 @@ mod tests {
     fn the_wind_leans_it() {
         let (positions, triangles) = sheet(41);
         let source = Vec3::new(0.5, 0.5, 0.0);
-        let ways = ways((&positions, &triangles), &[], &[source], lean(1.0, Vec3::new(0.34, -0.17, 0.0)));
-        let at = |x: usize, y: usize| ways[41 * y + x];
+        let distances = distances((&positions, &triangles), &[], &[source], lean(1.0, Vec3::new(0.34, -0.17, 0.0)));
+        let at = |x: usize, y: usize| distances[41 * y + x];
         // The flames lie twice as long as they were, to the right.
         let [right, left, up] = [at(40, 20), at(0, 20), at(20, 40)];
         assert!((right - 0.5 / 3.0).abs() < 1e-6 && (left - 0.5).abs() < 1e-6, "{right} {left}");
@@ -269,10 +269,10 @@ mod tests {
         let middle = positions.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / positions.len() as f64;
         let source = positions[0];
         let to = |p: Vec3| (p.as_dvec3() - middle).normalize();
-        let ways = ways((&positions, &triangles), &[], &[source], DVec3::ZERO);
-        for (way, place) in ways.iter().zip(&positions) {
+        let distances = distances((&positions, &triangles), &[], &[source], DVec3::ZERO);
+        for (distance, place) in distances.iter().zip(&positions) {
             let arc = radius * to(*place).angle_between(to(source));
-            assert!((way - arc).abs() < 0.03 * arc + 0.02 * radius, "{place}: {way}, {arc}");
+            assert!((distance - arc).abs() < 0.03 * arc + 0.02 * radius, "{place}: {distance}, {arc}");
         }
     }
 
@@ -284,20 +284,20 @@ mod tests {
         let positions: Vec<Vec3> = near.iter().copied().chain(near.iter().map(|p| *p + 0.1 * Vec3::Z)).collect();
         let other = triangles.iter().map(|t| t.map(|vertex| vertex + count));
         let triangles: Vec<[u32; 3]> = triangles.iter().copied().chain(other).collect();
-        let touching = ways((&positions, &triangles), &[[20, count + 20]], &[Vec3::ZERO], DVec3::ZERO);
+        let touching = distances((&positions, &triangles), &[[20, count + 20]], &[Vec3::ZERO], DVec3::ZERO);
         assert!(
             (touching[count as usize + 20] - 1.1).abs() < 1e-6,
             "from part to part: {}",
             touching[count as usize + 20]
         );
-        let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
-        assert!((ways[count as usize] - 0.3).abs() < 1e-6, "through the air: {}", ways[count as usize]);
+        let distances = distances((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
+        assert!((distances[count as usize] - 0.3).abs() < 1e-6, "through the air: {}", distances[count as usize]);
         // At the best angle, whose sine is a third, or nearly so.
-        let aside = ways[count as usize + 20];
+        let aside = distances[count as usize + 20];
         assert!(aside > 1.28 && aside < 1.31, "along the surface and then through the air: {aside}");
-        for (way, place) in ways.iter().zip(&positions) {
+        for (distance, place) in distances.iter().zip(&positions) {
             let straight = f64::from(place.length());
-            assert!(*way >= 0.999 * straight && *way <= THROUGH_AIR * straight + 1e-6, "{place}: {way}");
+            assert!(*distance >= 0.999 * straight && *distance <= THROUGH_AIR * straight + 1e-6, "{place}: {distance}");
         }
     }
 
@@ -310,8 +310,8 @@ mod tests {
         let positions: Vec<Vec3> = row.collect();
         let triangles: Vec<[u32; 3]> =
             (0..3).flat_map(|part| triangles.iter().map(move |t| t.map(|vertex| vertex + part * count))).collect();
-        let ways = ways((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
-        let last = ways[2 * count as usize + 20];
+        let distances = distances((&positions, &triangles), &[], &[Vec3::ZERO], DVec3::ZERO);
+        let last = distances[2 * count as usize + 20];
         // A voxel is as wide as a gap here, and all that is in it has its heat from one vertex, aside of the straight way.
         assert!(last > 3.59 && last < 1.07 * 3.6, "three sheets and two gaps: {last}");
     }

@@ -68,7 +68,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
 fn behind_sheets(setup: &Setup, count: u32) -> Setup {
     let layer_opacity = 1.0 - (1.0 - ALL_OPACITY).powf(1.0 / count.max(1) as f32);
     let mut behind = setup.clone();
-    (behind.layers, behind.layer_opacity, behind.ways.lists) = (count, layer_opacity, WAYS.to_vec());
+    (behind.layers, behind.layer_opacity, behind.alternatives.lists) = (count, layer_opacity, WAYS.to_vec());
     behind
 }
 

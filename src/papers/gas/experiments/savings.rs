@@ -45,7 +45,7 @@ pub fn cache(context: &mut Context<'_>) -> Result<(), Error> {
     let given = context.options.counts.as_slice();
     let counts = if given.is_empty() { &ENTRIES } else { given };
     let mut setup = context.setup.named();
-    setup.ways.density_caches = [None].into_iter().chain(counts.iter().copied().map(Some)).map(OrOff).collect();
+    setup.alternatives.density_caches = [None].into_iter().chain(counts.iter().copied().map(Some)).map(OrOff).collect();
     let title = "Table of densities: cost and Luv difference from their functions, by entries a side";
     run(context, &[setup], &[Variant::None, Variant::Traced, Variant::Table], title)
 }
@@ -57,7 +57,7 @@ pub fn cache(context: &mut Context<'_>) -> Result<(), Error> {
 pub fn skipping(context: &mut Context<'_>) -> Result<(), Error> {
     let mut setups = context.setup.in_scenes(&SCENES)?;
     for setup in &mut setups {
-        setup.ways.skips = [None].into_iter().chain(DEPTHS.map(Some)).map(OrOff).collect();
+        setup.alternatives.skips = [None].into_iter().chain(DEPTHS.map(Some)).map(OrOff).collect();
     }
     let title = "Skipped bricks: cost and Luv difference from all, by the optical depth that a ray may lose";
     run(context, &setups, &[Variant::None, Variant::Traced], title)
@@ -71,7 +71,7 @@ pub fn scale(context: &mut Context<'_>) -> Result<(), Error> {
     let given = context.options.counts.as_slice();
     let counts = if given.is_empty() { &SCALES } else { given };
     let mut setup = context.setup.named();
-    setup.ways.scales = [1].into_iter().chain(counts.iter().copied().filter(|&count| count != 1)).collect();
+    setup.alternatives.scales = [1].into_iter().chain(counts.iter().copied().filter(|&count| count != 1)).collect();
     let title = "Gas of fewer pixels: cost and Luv difference from that of all, by columns and rows between them";
     run(context, &[setup], &[Variant::None], title)
 }

@@ -1,5 +1,6 @@
 //! The thesis's figures, its frame rate, and growth of the method's times.
 
+mod contact_sheet;
 mod cooling;
 mod culling;
 pub mod figures;
@@ -13,7 +14,6 @@ mod readback;
 mod results;
 mod scaling;
 mod shading;
-mod strip;
 mod surface;
 
 use self::figures::{Drawn, FIGURES};
@@ -326,8 +326,8 @@ fn motions(context: &mut Context<'_>) -> Result<(), Error> {
 fn strip_of(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
-    let strip = strip::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(strip::LAST_FRAME))?;
-    context.picture(".png", &strip)?;
+    let sheet = contact_sheet::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(contact_sheet::LAST_FRAME))?;
+    context.picture(".png", &sheet)?;
     machine.check_validation().map_err(Error::from).map(drop)
 }
 

@@ -13,7 +13,7 @@ use crate::report::record::{Pass, Run};
 const NAME: &str = "points_ms";
 
 /// Milliseconds of each pass's points alone, by the passes' names, under the name that the results have them. Null without
-/// time stamps.
+/// timestamps.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.

@@ -55,7 +55,7 @@ impl AccumulateDepths {
         for band in &self.bands {
             let each = band.taps();
             for tile in tiles([columns, rows, 1], each, most_work) {
-                frame.make_room(&self.pass, tile.work(each), most_work)?;
+                frame.reserve_work(&self.pass, tile.work(each), most_work)?;
                 frame.compute(&self.pass, |dispatch| {
                     let Tile { first: [x, y, _], count } = tile;
                     let constants = AccumulateConstants { first: [x as i32, y as i32], ..*band };

@@ -84,7 +84,7 @@ impl GatheredDensity {
         for piece in 0..self.pieces {
             let each = self.seen_in(piece);
             for tile in tiles([columns, rows, self.clusters], each, most_work) {
-                frame.make_room(&self.pass, tile.work(each), most_work)?;
+                frame.reserve_work(&self.pass, tile.work(each), most_work)?;
                 frame.compute(&self.pass, |dispatch| {
                     let Tile { first, count: [x, y, z] } = tile;
                     dispatch.constants(&GatherConstants { piece, first, ..self.constants }).threads(x, y, z);

@@ -8,7 +8,7 @@ use crate::measure::ParameterError;
 use crate::measure::parameter::{Cost, Parameter, Range};
 use crate::scene::random::Random;
 
-/// Most of the vent's room that one step fills.
+/// Largest fraction of the vent's volume that one step fills.
 const MOST_FILLED: f64 = 0.1;
 
 /// The vent, in the ranges of [`Vent::declared`].
@@ -103,7 +103,7 @@ impl Vent {
         )?;
         let step_m3 = f64::from(parameters.time_step_s) * f64::from(self.effusion_m3_s);
         ParameterError::check(
-            step_m3 <= MOST_FILLED * self.room_m3(),
+            step_m3 <= MOST_FILLED * self.volume_m3(),
             "effusion-rate",
             self.effusion_m3_s,
             "would fill more than a tenth of the room above the vent in a step: widen it by `vent-radius`, or take a shorter \
@@ -111,12 +111,12 @@ impl Vent {
         )
     }
 
-    /// The room that lava comes out in: a cylinder as high as its radius.
-    fn room_m3(&self) -> f64 {
+    /// Of the vent, in which lava comes out: a cylinder as high as its radius.
+    fn volume_m3(&self) -> f64 {
         std::f64::consts::PI * f64::from(self.radius_m).powi(3)
     }
 
-    /// Places in the room for so many particles, which fill it evenly however many follow each other: an additive sequence by
+    /// Places in the vent for so many particles, which fill it evenly however many follow each other: an additive sequence by
     /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives.
     pub fn places(&self, parameters: &Parameters, margin_m: f64) -> Vec<Vec3> {
         /// The root of g^4 = g + 1.

@@ -43,7 +43,7 @@ impl Census {
         met as f64 / self.hits.len() as f64
     }
 
-    /// The share of the hits on land that each level of the map answered for, from the data on.
+    /// The share of the hits on terrain that each level of the map answered for, from the data on.
     pub fn levels(&self) -> Vec<f64> {
         let mut counts = Vec::new();
         for hit in self.hits.iter().filter(|hit| hit.surface == Surface::Terrain) {

@@ -1,4 +1,4 @@
-//! A flow as a strip of pictures over time, as chapter 3 tells of its kinds.
+//! The experiment `strip`: a contact sheet of a flow over time, as chapter 3 tells of its kinds.
 
 use super::super::setup::Setup;
 use crate::image::Rgba8;
@@ -10,12 +10,12 @@ use crate::measure::picture;
 use crate::measure::study::Study;
 use crate::papers::lava::Variant;
 
-/// Pictures of a strip.
+/// Pictures of a sheet.
 const PICTURES: u32 = 5;
 /// Its last frame without `frame`.
 pub const LAST_FRAME: u32 = 239;
 
-/// Frames of a strip, evenly up to its last; fewer where that is an early one.
+/// Frames of a sheet, evenly up to its last; fewer where that is an early one.
 fn frames(last: u32) -> impl Iterator<Item = u32> {
     let count = PICTURES.min(last + 1);
     (1..=count).map(move |at| ((u64::from(last) + 1) * u64::from(at) / u64::from(count)) as u32 - 1)

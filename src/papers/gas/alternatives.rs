@@ -1,4 +1,5 @@
-//! Ways to one picture: to its lists of fragments, and to its densities. A bench takes several and measures them in turn.
+//! Alternatives of one picture: methods of its lists of fragments, of its rays and of its densities. A bench takes several and
+//! measures them in turn.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -10,12 +11,12 @@ use crate::measure::config::entries;
 use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Value};
 use crate::papers::gas::model::Volume;
 
-/// The ways that are asked for, of each kind at least one.
+/// The methods that are asked for, of each kind at least one.
 #[derive(Debug, Clone)]
-pub struct Ways {
-    /// The ways to the lists of fragments.
+pub struct Alternatives {
+    /// Methods of the lists of fragments.
     pub lists: Vec<Lists>,
-    /// The ways of rays through the gas.
+    /// Methods of rays through the gas.
     pub marches: Vec<March>,
     /// Entries of the tables of densities that rays read.
     pub density_caches: Vec<OrOff<u32>>,
@@ -26,9 +27,9 @@ pub struct Ways {
 }
 
 /// The paper's.
-impl Default for Ways {
+impl Default for Alternatives {
     fn default() -> Self {
-        Ways {
+        Alternatives {
             lists: vec![Lists::Linked],
             marches: vec![March::Steps],
             density_caches: vec![OrOff(None)],
@@ -38,11 +39,11 @@ impl Default for Ways {
     }
 }
 
-impl Ways {
+impl Alternatives {
     /// Each option once.
-    pub fn declared() -> Vec<Parameter<Ways>> {
+    pub fn declared() -> Vec<Parameter<Alternatives>> {
         vec![
-            Parameter::new("lists", field!(Ways.lists))
+            Parameter::new("lists", field!(Alternatives.lists))
                 .help(
                     "The way to the lists of fragments. linked: the rasteriser draws a box around each triangle, and \
                      fragments are linked as they come; tiles: triangles are put into tiles of 8 x 8 pixels, and of what \
@@ -53,7 +54,7 @@ impl Ways {
                 .section("Combining A-buffer and volume rendering techniques")
                 .cost(Cost::Pipelines)
                 .unrecorded(),
-            Parameter::new("march", field!(Ways.marches))
+            Parameter::new("march", field!(Alternatives.marches))
                 .help(
                     "The way of rays through the gas. steps: in increments of a step; delta: by delta tracking, and of \
                      shadows that are traced by ratio tracking, whose mean is the integral, with `samples` ways of a ray \
@@ -62,7 +63,7 @@ impl Ways {
                 .section("Volume rendering")
                 .cost(Cost::Pipelines)
                 .unrecorded(),
-            Parameter::new("density-cache", field!(Ways.density_caches))
+            Parameter::new("density-cache", field!(Alternatives.density_caches))
                 .range(Range::from(2.0).to(512.0))
                 .help(
                     "Entries along each axis of a table of the densities' values, made in every frame, which rays read in \
@@ -71,7 +72,7 @@ impl Ways {
                 .section("Discussion of results")
                 .cost(Cost::Pipelines)
                 .unrecorded(),
-            Parameter::new("skip-empty", field!(Ways.skips))
+            Parameter::new("skip-empty", field!(Alternatives.skips))
                 .range(Range::from(0.0).to(100.0))
                 .help(
                     "Rays skip bricks of a volume in which one through all of it loses at most this optical depth: 0 for \
@@ -81,7 +82,7 @@ impl Ways {
                 .section("Volume rendering")
                 .cost(Cost::Pipelines)
                 .unrecorded(),
-            Parameter::new("volume-scale", field!(Ways.scales))
+            Parameter::new("volume-scale", field!(Alternatives.scales))
                 .range(Range::from(1.0).to(16.0))
                 .help(
                     "Gas is marched in the pixels of every so many columns and rows; the others take it from those around \
@@ -94,7 +95,7 @@ impl Ways {
         ]
     }
 
-    /// Checks that no way stands there twice.
+    /// Checks that no method stands there twice.
     ///
     /// # Errors
     /// [`Error::Input`] with the first that does.
@@ -106,7 +107,7 @@ impl Ways {
         check_once("volume-scale", &self.scales)
     }
 
-    /// Checks every range, and refuses what makes no difference to any way.
+    /// Checks every range, and refuses what makes no difference to any alternative.
     ///
     /// # Errors
     /// [`Error::Parameter`] for one outside of its range, [`Error::Input`] with one that was given in vain.
@@ -131,13 +132,13 @@ impl Ways {
     }
 
     /// Each alone, those of the last kind changing fastest.
-    pub fn alone(&self) -> Vec<Ways> {
+    pub fn alone(&self) -> Vec<Alternatives> {
         let mut all = Vec::new();
         for &lists in &self.lists {
             for &march in &self.marches {
                 for &cache in &self.density_caches {
                     for &skip in &self.skips {
-                        let of = |&scale| Ways {
+                        let of = |&scale| Alternatives {
                             lists: vec![lists],
                             marches: vec![march],
                             density_caches: vec![cache],
@@ -163,8 +164,8 @@ impl Ways {
 }
 
 impl Parameters {
-    /// The ways in the record.
-    pub(super) fn ways_config(&self) -> Map<String, Json> {
+    /// What alternatives differ in, in the record.
+    pub(super) fn alternative_config(&self) -> Map<String, Json> {
         entries([
             ("lists", self.lists.json()),
             ("march", self.march.json()),
@@ -174,8 +175,8 @@ impl Parameters {
         ])
     }
 
-    /// The ways in words, those that are not the paper's.
-    pub(super) fn ways_text(&self) -> String {
+    /// The same in words, where it is not the paper's.
+    pub(super) fn alternative_text(&self) -> String {
         let mut text = self.lists.text();
         if self.march == March::Delta {
             text += ", delta tracking";
@@ -193,7 +194,7 @@ impl Parameters {
     }
 }
 
-fn check_once<T: Value + PartialEq>(name: &str, ways: &[T]) -> Result<(), Error> {
-    let Some((_, twice)) = ways.iter().enumerate().find(|(at, way)| ways[..*at].contains(way)) else { return Ok(()) };
-    Err(Error::Input(format!("`{name}`: {} stands there twice; name each way once", twice.text())))
+fn check_once<T: Value + PartialEq>(name: &str, methods: &[T]) -> Result<(), Error> {
+    let Some((_, twice)) = methods.iter().enumerate().find(|(at, method)| methods[..*at].contains(method)) else { return Ok(()) };
+    Err(Error::Input(format!("`{name}`: {} stands there twice; name each once", twice.text())))
 }
