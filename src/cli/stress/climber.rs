@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::io;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -170,19 +170,27 @@ fn step(value: u64, measured: Measured, wall_s: f64) -> Step {
 /// Cause of the end of a process that left no report. Where the system tells that it has killed nothing for memory, a kill
 /// came from elsewhere, and another call tries the step again.
 fn crashed(ended: &Ended, has_memory: bool) -> Outcome {
-    #[cfg(unix)]
-    {
-        use std::os::unix::process::ExitStatusExt;
-        /// SIGKILL, which Linux ends a process with when memory runs out.
-        const KILL: i32 = 9;
-        if ended.status.signal() == Some(KILL) && has_memory {
-            let reason = "its process was killed, and not by the system for memory".to_owned();
-            return Outcome::Stopped(StopKind::Crash, reason);
-        }
-        if ended.status.signal() == Some(KILL) {
-            let reason = "its process was killed, as the system does when memory runs out".to_owned();
-            return Outcome::Stopped(StopKind::Memory, reason);
-        }
+    if !is_killed(ended.status) {
+        return Outcome::Stopped(StopKind::Crash, format!("its process failed: {}", ended.message()));
     }
-    Outcome::Stopped(StopKind::Crash, format!("its process failed: {}", ended.message()))
+    let (kind, by_whom) = if has_memory {
+        (StopKind::Crash, "and not by the system for memory")
+    } else {
+        (StopKind::Memory, "as the system does when memory runs out")
+    };
+    Outcome::Stopped(kind, format!("its process was killed, {by_whom}"))
+}
+
+/// SIGKILL ended the process, with which Linux ends one when memory runs out.
+#[cfg(unix)]
+fn is_killed(status: ExitStatus) -> bool {
+    use std::os::unix::process::ExitStatusExt;
+    const KILL: i32 = 9;
+    status.signal() == Some(KILL)
+}
+
+/// No system but Unix tells of signals.
+#[cfg(not(unix))]
+fn is_killed(_: ExitStatus) -> bool {
+    false
 }
