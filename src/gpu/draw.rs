@@ -109,21 +109,21 @@ impl<'a> Draw<'a> {
     }
 
     /// Draws `count` vertices from `first` on without indices.
-    pub fn vertices_from(&mut self, first: u32, count: u32) -> &mut Self {
-        self.draw(first, count, 1)
+    pub fn vertices_from(&mut self, first: u32, count: u32) {
+        self.draw(first, count, 1);
     }
 
     /// Draws `count` vertices without indices.
-    pub fn vertices(&mut self, count: u32) -> &mut Self {
-        self.draw(0, count, 1)
+    pub fn vertices(&mut self, count: u32) {
+        self.draw(0, count, 1);
     }
 
     /// Draws `count` instances of `vertices` vertices each, without indices.
-    pub fn instances(&mut self, vertices: u32, count: u32) -> &mut Self {
-        self.draw(0, vertices, count)
+    pub fn instances(&mut self, vertices: u32, count: u32) {
+        self.draw(0, vertices, count);
     }
 
-    fn draw(&mut self, first: u32, vertices: u32, instances: u32) -> &mut Self {
+    fn draw(&mut self, first: u32, vertices: u32, instances: u32) {
         let end = u64::from(first) + u64::from(vertices);
         if self.is_ready(first, DrawCounts { vertices: end, instances: instances.into(), indices: 0 }) {
             let BodyCommands { device, raw, .. } = self.commands;
@@ -131,25 +131,24 @@ impl<'a> Draw<'a> {
             // and instances lie inside what is bound.
             unsafe { device.raw.cmd_draw(raw, vertices, instances, first, 0) };
         }
-        self
     }
 
     /// Draws `count` indices.
-    pub fn indices(&mut self, count: u32) -> &mut Self {
-        self.indices_from(0, count)
+    pub fn indices(&mut self, count: u32) {
+        self.indices_from(0, count);
     }
 
     /// Draws `count` indices from `first` on.
-    pub fn indices_from(&mut self, first: u32, count: u32) -> &mut Self {
-        self.draw_indexed(first, count, 1)
+    pub fn indices_from(&mut self, first: u32, count: u32) {
+        self.draw_indexed(first, count, 1);
     }
 
     /// Draws `count` instances of the first `indices` indices.
-    pub fn indexed_instances(&mut self, indices: u32, count: u32) -> &mut Self {
-        self.draw_indexed(0, indices, count)
+    pub fn indexed_instances(&mut self, indices: u32, count: u32) {
+        self.draw_indexed(0, indices, count);
     }
 
-    fn draw_indexed(&mut self, first: u32, indices: u32, instances: u32) -> &mut Self {
+    fn draw_indexed(&mut self, first: u32, indices: u32, instances: u32) {
         let end = u64::from(first) + u64::from(indices);
         // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
         if self.is_ready(first, DrawCounts { vertices: 0, instances: instances.into(), indices: end }) {
@@ -157,7 +156,6 @@ impl<'a> Draw<'a> {
             // SAFETY: as for `draw`; the indices lie inside the bound buffer.
             unsafe { device.raw.cmd_draw_indexed(raw, indices, instances, first, 0, 0) };
         }
-        self
     }
 
     /// Confines the draws to come to a rectangle of the attachments, in texels from the top left corner; what of it lies
@@ -176,10 +174,10 @@ impl<'a> Draw<'a> {
     }
 
     /// Draws what the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
-    pub fn indices_indirect(&mut self) -> &mut Self {
+    pub fn indices_indirect(&mut self) {
         let Body::Graphics { indirect: Some(clamp), .. } = &self.commands.inner.body else {
             self.commands.refuse("it has no indirect buffer");
-            return self;
+            return;
         };
         self.fetched.is_indirect = true;
         if self.is_ready(0, DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
@@ -189,7 +187,6 @@ impl<'a> Draw<'a> {
             // is bound and which the pass's barrier made visible.
             unsafe { device.raw.cmd_draw_indexed_indirect(raw, clamp.clamped.raw, 0, 1, stride) };
         }
-        self
     }
 
     /// True when a draw from element `first` up to `counts` may be recorded.
@@ -231,23 +228,23 @@ impl<'a> Dispatch<'a> {
 
     /// Dispatches at least `count` threads, in as many rows of workgroups as the device asks for: the shader numbers them by
     /// `common/elements.glsl`. One that does not is held to a single row.
-    pub fn elements(&mut self, count: u32) -> &mut Self {
-        self.layers_of_elements(count, 1)
+    pub fn elements(&mut self, count: u32) {
+        self.layers_of_elements(count, 1);
     }
 
     /// As [`Dispatch::elements`], so many times along z.
-    pub fn layers_of_elements(&mut self, count: u32, layers: u32) -> &mut Self {
+    pub fn layers_of_elements(&mut self, count: u32, layers: u32) {
         let [along_x, along_y, along_z] = self.workgroup.size;
         let [most, ..] = self.commands.device.physical().limits.max_compute_work_group_count;
         let groups = count.div_ceil(along_x);
         let rows = if self.workgroup.lies_in_rows { groups.div_ceil(most).max(1) } else { 1 };
         let [x, y, z] =
             [(groups.div_ceil(rows), along_x), (rows, along_y), (layers, along_z)].map(|(n, by)| n.saturating_mul(by));
-        self.threads(x, y, z)
+        self.threads(x, y, z);
     }
 
     /// Dispatches at least `x` x `y` x `z` threads, in whole workgroups.
-    pub fn threads(&mut self, x: u32, y: u32, z: u32) -> &mut Self {
+    pub fn threads(&mut self, x: u32, y: u32, z: u32) {
         let [a, b, c] = self.workgroup.size;
         let groups = [x.div_ceil(a), y.div_ceil(b), z.div_ceil(c)];
         let limits = self.commands.device.physical().limits.max_compute_work_group_count;
@@ -263,14 +260,13 @@ impl<'a> Dispatch<'a> {
             // so many workgroups.
             unsafe { device.raw.cmd_dispatch(raw, groups[0], groups[1], groups[2]) };
         }
-        self
     }
 
     /// Dispatches as many workgroups as the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
-    pub fn groups_indirect(&mut self) -> &mut Self {
+    pub fn groups_indirect(&mut self) {
         let Some(clamp) = self.commands.inner.body.parameters() else {
             self.commands.refuse("it has no indirect buffer");
-            return self;
+            return;
         };
         if self.commands.is_ready() {
             let BodyCommands { device, raw, .. } = self.commands;
@@ -278,6 +274,5 @@ impl<'a> Dispatch<'a> {
             // device's limits and which the pass's barrier made visible.
             unsafe { device.raw.cmd_dispatch_indirect(raw, clamp.clamped.raw, 0) };
         }
-        self
     }
 }

@@ -7,6 +7,7 @@ use ash::{khr, vk};
 
 use super::device::Device;
 use super::error::{Context, Error};
+use super::messages::text;
 use super::pipeline::Pipeline;
 
 const ASKING: &str = "asking what the driver made of pass";
@@ -120,9 +121,4 @@ fn value(statistic: &vk::PipelineExecutableStatisticKHR<'_>) -> String {
             _ => String::new(),
         }
     }
-}
-
-fn text(bytes: &[std::ffi::c_char]) -> String {
-    let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
-    String::from_utf8_lossy(&bytes).into_owned()
 }

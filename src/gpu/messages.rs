@@ -42,6 +42,12 @@ impl Messages {
     }
 }
 
+/// A driver's text up to its zero, or to its end where it forgot that.
+pub(super) fn text(bytes: &[std::ffi::c_char]) -> String {
+    let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 unsafe fn text_of(pointer: *const std::ffi::c_char) -> String {
     if pointer.is_null() {
         return String::new();

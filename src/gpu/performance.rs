@@ -15,6 +15,7 @@ use super::extensions::Extension;
 use super::frame::Frame;
 use super::instance::Instance;
 use super::live::Kind;
+use super::messages::text;
 use super::profiling_lock::ProfilingLock;
 use super::recorder::Recorder;
 use super::sample::Mode;
@@ -161,12 +162,6 @@ pub(super) fn counters(
         storage: counter.storage,
     });
     Ok(Some(described.collect()))
-}
-
-/// A driver's text up to its zero, or to its end where it forgot that.
-fn text(bytes: &[std::ffi::c_char]) -> String {
-    let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
-    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// A pool of queries that count, reset once: each replay adds what it counts to the same queries.

@@ -7,6 +7,7 @@ use ash::vk;
 use super::error::{Context, Error};
 use super::extensions::{self, Extension};
 use super::instance::{Instance, version_text};
+use super::messages::text;
 use super::performance::{self, PerformanceCounter};
 use super::portability;
 
@@ -219,10 +220,6 @@ impl PhysicalDevice {
             .iter()
             .position(|q| q.queue_flags.contains(needed))
             .map(|family| (family as u32, queues[family].timestamp_valid_bits));
-        let text = |bytes: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
-            String::from_utf8_lossy(&bytes).into_owned()
-        };
         Ok(PhysicalDevice {
             raw,
             index,

@@ -263,9 +263,7 @@ fn draw_and_copy(device: &Arc<Device>, forget: bool) -> Vec<Message> {
     let (_, forgotten) = derive(&State::NEW, nobody, true, true);
     let mut recorder = Recorder::new(device).unwrap();
     let outcome = recorder.run(Mode::Plain, |frame| {
-        frame.graphics(&draw, |draw| {
-            draw.vertices(3);
-        })?;
+        frame.graphics(&draw, |draw| draw.vertices(3))?;
         if forget {
             let submission = frame.recorder.commands.submission;
             assert!(target.image().with_states(submission, 0..1, |states| states.fill(forgotten)).is_ok());

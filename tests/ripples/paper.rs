@@ -58,12 +58,8 @@ pub struct Ripples {
 impl Paper for Ripples {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), gpu::Error> {
         let wave = Wave { wavelength_px: self.wavelength_px, phase_turns: number as f32 / 8.0 };
-        frame.compute(&self.propagate, |dispatch| {
-            dispatch.constants(&wave).threads(COLUMNS, 1, 1);
-        })?;
-        frame.graphics(&self.shade, |draw| {
-            draw.vertices(3);
-        })
+        frame.compute(&self.propagate, |dispatch| dispatch.constants(&wave).threads(COLUMNS, 1, 1))?;
+        frame.graphics(&self.shade, |draw| draw.vertices(3))
     }
 
     fn picture(&self) -> &Arc<ImageView> {

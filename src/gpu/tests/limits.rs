@@ -161,7 +161,7 @@ fn columns(device: &Arc<Device>, indices: &[u32]) -> Vec<usize> {
     assert_eq!(pass.info().reads, ["indices"]);
     let mut recorder = Recorder::new(device).unwrap();
     let count = indices.len() as u32;
-    recorder.run(Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.indices(count))).unwrap();
+    recorder.run(Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.indices(count))).unwrap();
     let texels = transfer::read_image(device, &target).unwrap();
     texels.chunks_exact(4).enumerate().filter(|(_, texel)| texel[0] > 0).map(|(column, _)| column).collect()
 }

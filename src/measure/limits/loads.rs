@@ -74,11 +74,7 @@ pub fn issue(shaders: &ShaderLibrary) -> Result<Workload, Error> {
 pub fn empty_dispatch(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let pass = idle(shaders)?;
     Ok(Workload::time(move |frame, load| {
-        (0..load).try_for_each(|_| {
-            frame.compute(&pass, |dispatch| {
-                dispatch.threads(1, 1, 1);
-            })
-        })
+        (0..load).try_for_each(|_| frame.compute(&pass, |dispatch| dispatch.threads(1, 1, 1)))
     }))
 }
 
@@ -129,13 +125,7 @@ pub fn empty_draw(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let pass = Pass::graphics("empty", "", "limits/flat.vert", "limits/constant.frag")
         .color(&target, Load::Discard, Blend::Replace)
         .build(shaders)?;
-    Ok(Workload::time(move |frame, load| {
-        (0..load).try_for_each(|_| {
-            frame.graphics(&pass, |draw| {
-                draw.vertices(3);
-            })
-        })
-    }))
+    Ok(Workload::time(move |frame, load| (0..load).try_for_each(|_| frame.graphics(&pass, |draw| draw.vertices(3)))))
 }
 
 /// Pixels of a constant colour, in 10^9 a second. Each fill is a render pass of its own: of opaque ones in the same, a

@@ -115,11 +115,7 @@ impl Connection {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, steps: &[Pass], tick: u64) -> Result<(), Error> {
         let [reset, choice, unite, flatten, check, count, leave, ..] = steps else { return Ok(()) };
-        let mut run = |step: &Pass, threads: u32| {
-            frame.compute(step, |dispatch| {
-                dispatch.elements(threads);
-            })
-        };
+        let mut run = |step: &Pass, threads: u32| frame.compute(step, |dispatch| dispatch.elements(threads));
         match tick % SEARCH_TICKS {
             0 => {
                 run(reset, self.vertex_count)?;
@@ -128,9 +124,7 @@ impl Connection {
             1 => self.unite(frame, unite),
             2 => {
                 self.unite(frame, unite)?;
-                frame.compute(flatten, |dispatch| {
-                    dispatch.elements(self.vertex_count);
-                })
+                frame.compute(flatten, |dispatch| dispatch.elements(self.vertex_count))
             }
             _ => {
                 run(check, self.triangle_count)?;

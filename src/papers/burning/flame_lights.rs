@@ -70,9 +70,7 @@ impl FlameLights {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.threads(1, 1, 1);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.threads(1, 1, 1))
     }
 }
 

@@ -98,9 +98,7 @@ impl InternalDeformation {
         if let Some(base_points) = &self.base_points
             && slice == 0
         {
-            frame.compute(&base_points[tick], |dispatch| {
-                dispatch.elements(self.block_count);
-            })?;
+            frame.compute(&base_points[tick], |dispatch| dispatch.elements(self.block_count))?;
         }
         frame.compute(&self.vertices[tick], |dispatch| {
             dispatch.constants(&Slice { number: slice, division: self.time_division }).groups_indirect();

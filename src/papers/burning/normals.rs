@@ -47,8 +47,6 @@ impl Normals {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.elements(self.draw_vertices);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.elements(self.draw_vertices))
     }
 }

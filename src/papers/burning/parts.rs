@@ -219,11 +219,7 @@ impl Parts {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: u64) -> Result<(), Error> {
         let newest = (tick % 2) as usize;
-        let mut run = |step: &Pass, threads: u32| {
-            frame.compute(step, |dispatch| {
-                dispatch.elements(threads);
-            })
-        };
+        let mut run = |step: &Pass, threads: u32| frame.compute(step, |dispatch| dispatch.elements(threads));
         match tick % SEARCH_TICKS {
             0 => {
                 let [inherit, adopt, clear, moments] = &self.take[newest];
@@ -236,9 +232,7 @@ impl Parts {
             1 => self.unite(frame, newest),
             2 => {
                 self.unite(frame, newest)?;
-                frame.compute(&self.flatten, |dispatch| {
-                    dispatch.elements(self.vertex_count);
-                })
+                frame.compute(&self.flatten, |dispatch| dispatch.elements(self.vertex_count))
             }
             _ => {
                 run(&self.check, self.triangle_count)?;
@@ -249,7 +243,7 @@ impl Parts {
 
     fn unite(&self, frame: &mut Frame<'_>, newest: usize) -> Result<(), Error> {
         frame.compute(&self.unite[newest], |dispatch| {
-            dispatch.constants(&self.touches).elements(self.triangle_count + self.touches.count);
+            dispatch.constants(&self.touches).elements(self.triangle_count + self.touches.count)
         })
     }
 }

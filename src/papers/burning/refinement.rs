@@ -92,9 +92,7 @@ impl Refinement {
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let mut run = |step: &Pass, level: u32, threads: u32| {
             let constants = Dispatch { level, points: self.points };
-            frame.compute(step, |dispatch| {
-                dispatch.constants(&constants).elements(self.coarse_count * threads);
-            })
+            frame.compute(step, |dispatch| dispatch.constants(&constants).elements(self.coarse_count * threads))
         };
         let [find, split_finest, split] = &self.steps;
         run(find, self.levels, self.points)?;

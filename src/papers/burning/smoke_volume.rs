@@ -91,13 +91,9 @@ impl SmokeVolume {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [find, clear, fill, light] = &self.steps;
-        frame.compute(find, |dispatch| {
-            dispatch.threads(1, 1, 1);
-        })?;
+        frame.compute(find, |dispatch| dispatch.threads(1, 1, 1))?;
         for (step, threads) in [(clear, CELL_COUNT), (fill, self.smoke_pool), (light, CELL_COUNT)] {
-            frame.compute(step, |dispatch| {
-                dispatch.elements(threads);
-            })?;
+            frame.compute(step, |dispatch| dispatch.elements(threads))?;
         }
         Ok(())
     }

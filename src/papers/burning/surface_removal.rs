@@ -147,9 +147,7 @@ impl SurfaceRemoval {
                 let (connection, steps) = &**connecting;
                 connection.record(frame, &steps[newest], tick)
             }
-            Steps::Marking(steps) => frame.compute(&steps[newest][0], |dispatch| {
-                dispatch.groups_indirect();
-            }),
+            Steps::Marking(steps) => frame.compute(&steps[newest][0], |dispatch| dispatch.groups_indirect()),
         }
     }
 

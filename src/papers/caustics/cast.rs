@@ -73,8 +73,6 @@ impl Cast {
             height_slack_m,
             ambient: self.ambient,
         };
-        frame.graphics(&self.pass, |draw| {
-            draw.constants(&constants).indices(lit.receiver.index_count);
-        })
+        frame.graphics(&self.pass, |draw| draw.constants(&constants).indices(lit.receiver.index_count))
     }
 }

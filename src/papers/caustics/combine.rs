@@ -54,8 +54,6 @@ impl Combine {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.constants(&self.constants).vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.constants(&self.constants).vertices(3))
     }
 }

@@ -49,8 +49,6 @@ impl CombineSlices {
             top: (height / 2.0) as f32,
             cell_height: (height / lit.cells.len() as f64) as f32,
         };
-        frame.graphics(&self.pass, |draw| {
-            draw.constants(&constants).vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.constants(&constants).vertices(3))
     }
 }

@@ -297,9 +297,7 @@ impl CulledMap {
             (&self.cull_compact, triangles, 1),
         ];
         for (pass, elements, layers) in steps {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).layers_of_elements(elements, layers);
-            })?;
+            frame.compute(pass, |dispatch| dispatch.constants(&self.constants).layers_of_elements(elements, layers))?;
         }
         frame.graphics(&self.caustics_map, |draw| {
             match self.options {

@@ -19,7 +19,6 @@ use super::intersections::Scope;
 use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::Context;
-use super::shadow_map::ShadowMap;
 use super::water_surface::WaterSurface;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::{read_buffer, update, upload};
@@ -233,9 +232,7 @@ impl HitMap {
         let sharing = straddle::threads(triangles);
         // Two triangles a cell, which are landed together.
         for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles / 2), (&self.straddle, sharing)] {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(&constants).elements(threads);
-            })?;
+            frame.compute(pass, |dispatch| dispatch.constants(&constants).elements(threads))?;
         }
         (0..).zip(&self.caustics_maps).try_for_each(|(layer, pass)| {
             frame.graphics(pass, |draw| {
@@ -279,13 +276,9 @@ fn constants(
         columns: water.grid.columns + 1,
         ..bytemuck::Zeroable::zeroed()
     };
-    if let Some(ShadowMap { bounds, map, .. }) = shadows {
-        let offset = bounds.center - volumes.reference;
-        let texels = f64::from(map.width());
-        constants.shadow_center = [offset.x as f32, offset.z as f32];
-        constants.shadow_texels_per_m = [(texels / bounds.extent.x) as f32, (texels / bounds.extent.z) as f32];
-        constants.shadow_middle = offset.y as f32;
-        constants.shadow_top = (offset.y + bounds.extent.y / 2.0) as f32;
+    if let Some(shadow) = shadows {
+        [constants.shadow_center, constants.shadow_texels_per_m, [constants.shadow_middle, constants.shadow_top]] =
+            shadow.place(volumes.reference);
     }
     constants
 }

@@ -105,8 +105,6 @@ impl IlluminationVolumes {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&self.constants).elements(self.constants.vertex_count);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.constants(&self.constants).elements(self.constants.vertex_count))
     }
 }

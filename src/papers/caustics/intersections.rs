@@ -212,13 +212,9 @@ impl Options {
             rows: water.grid.rows + 1,
             ..bytemuck::Zeroable::zeroed()
         };
-        if let Some(ShadowMap { bounds, map, .. }) = shadows {
-            let offset = bounds.center - volumes.reference;
-            let texels = f64::from(map.width());
-            constants.shadow_center = [offset.x as f32, offset.z as f32];
-            constants.shadow_texels_per_m = [(texels / bounds.extent.x) as f32, (texels / bounds.extent.z) as f32];
-            constants.shadow_middle = offset.y as f32;
-            constants.shadow_top = (offset.y + bounds.extent.y / 2.0) as f32;
+        if let Some(shadow) = shadows {
+            [constants.shadow_center, constants.shadow_texels_per_m, [constants.shadow_middle, constants.shadow_top]] =
+                shadow.place(volumes.reference);
         }
         Some(Options(constants))
     }

@@ -38,8 +38,6 @@ impl Multiply {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, plane: usize) -> Result<(), Error> {
-        frame.graphics(&self.passes[plane], |draw| {
-            draw.constants(&self.constants).vertices(3);
-        })
+        frame.graphics(&self.passes[plane], |draw| draw.constants(&self.constants).vertices(3))
     }
 }

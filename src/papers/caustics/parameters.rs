@@ -7,10 +7,10 @@ use glam::Vec3;
 pub use super::culled_map::CullSteps;
 pub use super::planes::SmartPlacement;
 use super::water_map::WaterMap;
-use crate::field;
-use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range, Size};
+use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
+use crate::{field, size_field};
 
 /// The methods that the thesis compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -186,11 +186,6 @@ impl Default for Parameters {
     }
 }
 
-const SIZE: Field<Parameters, Size> = Field {
-    get: |p| Size { width: p.width, height: p.height },
-    set: |p, size| (p.width, p.height) = (size.width, size.height),
-};
-
 /// Names of [`SmartPlacement`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Placement {
@@ -364,13 +359,7 @@ impl Parameters {
                 .unit("metres")
                 .help("Longest wavelength")
                 .cost(Cost::Buffers),
-            Parameter::new("size", SIZE)
-                .range(Range::from(1.0))
-                .unit("pixel")
-                .help("Size of the picture")
-                .cost(Cost::Buffers)
-                .everyday()
-                .unrecorded(),
+            parameter::size(size_field!(Parameters)),
             Parameter::new("samples", field!(Parameters.samples))
                 .range(Range::from(1.0).to(64.0))
                 .help("Rays of the finished picture in each pixel; no benchmark contains them")

@@ -154,9 +154,7 @@ impl LitReceiver {
             top: within.map_or(half, |cell| cell.upper),
             bottom: within.map_or(-half, |cell| cell.lower),
         };
-        frame.graphics(pass, |draw| {
-            draw.constants(&constants).indices(self.receiver.index_count);
-        })
+        frame.graphics(pass, |draw| draw.constants(&constants).indices(self.receiver.index_count))
     }
 
     /// Half the height of a uniform plane's cell, metres.

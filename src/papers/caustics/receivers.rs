@@ -71,9 +71,7 @@ impl Receivers {
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|(pass, receiver)| {
             let constants = ReceiverConstants { albedo: receiver.albedo.to_array(), _pad: 0.0, ambient: self.ambient };
-            frame.graphics(pass, |draw| {
-                draw.constants(&constants).indices(receiver.index_count);
-            })
+            frame.graphics(pass, |draw| draw.constants(&constants).indices(receiver.index_count))
         })
     }
 }

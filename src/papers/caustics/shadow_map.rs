@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use ash::vk;
+use glam::DVec3;
 
 use super::bounding_box::ReceiverBox;
 use super::receiver::{BoxBlock, LitReceiver, Receiver, Vertex, box_block};
@@ -58,6 +59,18 @@ impl ShadowMap {
         };
         let passes = lit.iter().map(pass).collect::<Result<_, Error>>()?;
         Ok(Some(ShadowMap { passes, bounds, map }))
+    }
+
+    /// The box's middle and the map's texels a metre, along x and z; the heights of the box's middle and top. Metres from
+    /// `reference`.
+    pub fn place(&self, reference: DVec3) -> [[f32; 2]; 3] {
+        let ReceiverBox { center, extent, .. } = self.bounds;
+        let (offset, texels) = (center - reference, f64::from(self.map.width()));
+        [
+            [offset.x as f32, offset.z as f32],
+            [(texels / extent.x) as f32, (texels / extent.z) as f32],
+            [offset.y as f32, (offset.y + extent.y / 2.0) as f32],
+        ]
     }
 
     /// # Errors

@@ -183,14 +183,11 @@ impl SmartPlanes {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let ProfileConstants { map_size, threads, .. } = self.profile;
-        frame.compute(&self.depth_profile, |dispatch| {
-            dispatch.constants(&self.profile).threads(map_size, threads, 1);
-        })?;
+        frame
+            .compute(&self.depth_profile, |dispatch| dispatch.constants(&self.profile).threads(map_size, threads, 1))?;
         let SmartConstants { levels, most, .. } = self.smart;
         for (pass, threads) in [(&self.sub_boxes, WORKGROUP), (&self.smart_planes, most.max(levels))] {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.smart).elements(threads);
-            })?;
+            frame.compute(pass, |dispatch| dispatch.constants(&self.smart).elements(threads))?;
         }
         Ok(())
     }

@@ -44,8 +44,6 @@ impl FroxelInject {
 
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [columns, rows, slices] = self.size;
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.threads(columns, rows, slices);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.threads(columns, rows, slices))
     }
 }

@@ -32,8 +32,6 @@ impl FroxelIntegrate {
 
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [columns, rows, _] = self.size;
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.threads(columns, rows, 1);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.threads(columns, rows, 1))
     }
 }

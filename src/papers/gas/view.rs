@@ -27,8 +27,6 @@ impl View {
     }
 
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.vertices(3))
     }
 }

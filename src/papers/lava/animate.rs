@@ -138,9 +138,7 @@ impl Animate {
         match &self.motion {
             Motion::Free(Free { first, ping_pong, constants }) => {
                 let pass = if self.steps == 0 { first } else { &ping_pong[self.steps as usize % 2] };
-                frame.graphics(pass, |draw| {
-                    draw.constants(constants).vertices(3);
-                })?;
+                frame.graphics(pass, |draw| draw.constants(constants).vertices(3))?;
             }
             Motion::Sph(sph) => {
                 let from = if self.steps == 0 { START } else { 1 - self.steps as usize % 2 };

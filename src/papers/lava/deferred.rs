@@ -85,8 +85,6 @@ impl Deferred {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, splats: &Splats, drift_m: f32) -> Result<(), Error> {
         frame.graphics(&self.blending, |draw| splats.draw(draw))?;
-        frame.graphics(&self.deferred, |draw| {
-            draw.constants(&self.rays.drifted(drift_m)).vertices(3);
-        })
+        frame.graphics(&self.deferred, |draw| draw.constants(&self.rays.drifted(drift_m)).vertices(3))
     }
 }

@@ -103,9 +103,7 @@ impl Density {
         particles: &[Point],
     ) -> Result<(), Error> {
         let constants = DensityConstants { plane_heights_m: planes.heights_m, ..self.constants };
-        frame.graphics(&self.passes[cluster], |draw| {
-            draw.constants(&constants).vertices(particles.len() as u32);
-        })
+        frame.graphics(&self.passes[cluster], |draw| draw.constants(&constants).vertices(particles.len() as u32))
     }
 }
 

@@ -58,8 +58,6 @@ impl LavaLight {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [across, down] = self.constants.count;
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&self.constants).threads(across, down, 1);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.constants(&self.constants).threads(across, down, 1))
     }
 }

@@ -80,14 +80,8 @@ impl March {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
-        frame.compute(&self.highest_rows, |dispatch| {
-            dispatch.constants(&self.field).threads(self.field.rows, 1, 1);
-        })?;
-        frame.compute(&self.highest, |dispatch| {
-            dispatch.constants(&self.field).threads(1, 1, 1);
-        })?;
-        frame.graphics(&self.march, |draw| {
-            draw.constants(&self.rays.drifted(drift_m)).vertices(3);
-        })
+        frame.compute(&self.highest_rows, |dispatch| dispatch.constants(&self.field).threads(self.field.rows, 1, 1))?;
+        frame.compute(&self.highest, |dispatch| dispatch.constants(&self.field).threads(1, 1, 1))?;
+        frame.graphics(&self.march, |draw| draw.constants(&self.rays.drifted(drift_m)).vertices(3))
     }
 }

@@ -96,9 +96,7 @@ impl Objects {
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.calls.iter().try_for_each(|Call { pass, index_count, paint }| {
             let constants = ObjectConstants { paint: *paint, ..self.constants };
-            frame.graphics(pass, |draw| {
-                draw.constants(&constants).indices(*index_count);
-            })
+            frame.graphics(pass, |draw| draw.constants(&constants).indices(*index_count))
         })
     }
 }

@@ -52,8 +52,6 @@ impl ParticlePoints {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, state: usize, count: u32) -> Result<(), Error> {
-        frame.graphics(&self.passes[state], |draw| {
-            draw.constants(&self.constants).vertices(count);
-        })
+        frame.graphics(&self.passes[state], |draw| draw.constants(&self.constants).vertices(count))
     }
 }

@@ -28,9 +28,7 @@ fn orange(device: &Arc<Device>) -> Result<Vec<u8>, Error> {
         .build(&shaders)?;
     let mut recorder = Recorder::new(device)?;
     let sample = recorder.run(Mode::Timestamped, |frame| {
-        frame.graphics(&fill, |draw| {
-            draw.constants(&Paint { value: [1.0, 0.5, 0.0, 1.0] }).vertices(3);
-        })
+        frame.graphics(&fill, |draw| draw.constants(&Paint { value: [1.0, 0.5, 0.0, 1.0] }).vertices(3))
     })?;
     for pass in &sample.passes {
         println!("{}: {:?} ms", pass.info.name, pass.gpu_ms);

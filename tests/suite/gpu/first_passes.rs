@@ -67,11 +67,7 @@ fn errors_before_the_end_are_errors() {
         let pass = paint_pass(&shaders, "first", &target, BLACK, Blend::Replace);
         let mut recorder = Recorder::new(device).unwrap();
         let mut run = |count| {
-            let record = |frame: &mut Frame<'_>| {
-                frame.graphics(&pass, |draw| {
-                    draw.vertices(3);
-                })
-            };
+            let record = |frame: &mut Frame<'_>| frame.graphics(&pass, |draw| draw.vertices(3));
             recorder.run_first(Mode::Plain, count, record).map(drop)
         };
         // It lacks its constants.

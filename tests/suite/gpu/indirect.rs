@@ -50,9 +50,7 @@ fn an_indirect_draw_takes_what_the_last_pass_wrote() {
         for (refill, columns) in more.iter().zip([0, 4, 8]) {
             let sample = run(device, Mode::Plain, |frame| {
                 frame.copy(refill)?;
-                frame.graphics(&draw, |draw| {
-                    draw.indices_indirect();
-                })
+                frame.graphics(&draw, |draw| draw.indices_indirect())
             })
             .unwrap();
             assert_eq!(sample.passes[1].calls, 1);

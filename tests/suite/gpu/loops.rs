@@ -27,12 +27,7 @@ fn loops_end_where_this_driver_is_known_to_end_them() {
                 .with("Made", &made)
                 .build(&shaders(device))
                 .unwrap();
-            run(device, Mode::Plain, |frame| {
-                frame.compute(&pass, |dispatch| {
-                    dispatch.threads(1, 1, 1);
-                })
-            })
-            .unwrap();
+            run(device, Mode::Plain, |frame| frame.compute(&pass, |dispatch| dispatch.threads(1, 1, 1))).unwrap();
             bytemuck::pod_collect_to_vec(&transfer::read_buffer(device, &made).unwrap())
         };
         assert_eq!(made([100, 60_000]), [100, 60_000]);

@@ -54,9 +54,13 @@ fn draws_beyond_what_is_bound_are_refused() {
         assert_eq!(refuse(&plain, &|d| _ = d.counting(true)), "pass plain: it has no counting pipeline");
         // All that is bound may be drawn, and rebinding takes the bounds along.
         let sample = run(device, Mode::Plain, |frame| {
-            frame.graphics(&plain, |draw| _ = draw.vertices(3).vertices_from(1, 2).instances(3, 1_000))?;
-            frame.graphics(&indexed, |draw| _ = draw.indices(3))?;
-            frame.graphics(&instanced, |draw| _ = draw.instances(1_000, 3))
+            frame.graphics(&plain, |draw| {
+                draw.vertices(3);
+                draw.vertices_from(1, 2);
+                draw.instances(3, 1_000);
+            })?;
+            frame.graphics(&indexed, |draw| draw.indices(3))?;
+            frame.graphics(&instanced, |draw| draw.instances(1_000, 3))
         });
         assert_eq!(sample.unwrap().passes[0].calls, 3);
         let fewer = plain.rebind().vertices(&vertices(device, 2)).build(&library).unwrap();
@@ -152,7 +156,7 @@ fn an_indirect_draw_stays_inside_its_buffers() {
                 .color(&target, BLACK, Blend::Replace)
                 .build(&library)
                 .unwrap();
-            run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.indices_indirect())).unwrap();
+            run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.indices_indirect())).unwrap();
             let texel = if is_drawn { [255; 4] } else { [0, 0, 0, 255] };
             assert_eq!(texels::<[u8; 4]>(device, &target), [texel; 16]);
         }

@@ -44,7 +44,7 @@ fn numbers(device: &Arc<Device>) -> Arc<ImageView> {
     let numbers = color_target(device, "numbers", vk::Format::R32_UINT, 4, 4);
     let pass = Pass::graphics("number", "", FULLSCREEN, "test/texels.frag");
     let pass = pass.color(&numbers, Load::Discard, Blend::Replace).build(&shaders(device)).unwrap();
-    run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.vertices(3))).unwrap();
+    run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
     numbers
 }
 
@@ -82,7 +82,7 @@ fn textures_are_filtered_where_the_device_does() {
                 continue;
             }
             let look = look.unwrap();
-            run(device, Mode::Plain, |frame| frame.graphics(&look, |draw| _ = draw.vertices(3))).unwrap();
+            run(device, Mode::Plain, |frame| frame.graphics(&look, |draw| draw.vertices(3))).unwrap();
             assert_eq!(texels::<u32>(device, &target), [3 + 256 * 3]);
             // Rebinding takes the check along.
             if main == filtered {
@@ -138,8 +138,13 @@ fn counting_draws_filter_what_the_device_does_and_read_what_the_pass_binds() {
         let expected = "pass look: shader common/empty.frag writes no value of its type to target 0, target";
         assert_eq!(message(build(written, vk::Filter::LINEAR)), expected);
         let look = build(&filters, vk::Filter::NEAREST).unwrap();
-        run(device, Mode::Plain, |frame| frame.graphics(&look, |draw| _ = draw.vertices(3).counting(true).vertices(3)))
-            .unwrap();
+        run(device, Mode::Plain, |frame| {
+            frame.graphics(&look, |draw| {
+                draw.vertices(3);
+                draw.counting(true).vertices(3);
+            })
+        })
+        .unwrap();
     });
 }
 
@@ -168,7 +173,7 @@ fn two_stages_sample_one_image() {
         for value in [0.5, 0.25] {
             run(device, Mode::Plain, |frame| {
                 paint(frame, &fill, value)?;
-                frame.graphics(&look, |draw| _ = draw.vertices(3))
+                frame.graphics(&look, |draw| draw.vertices(3))
             })
             .unwrap();
             assert_eq!(texels::<[f32; 2]>(device, &target), [[value; 2]; 4]);
@@ -196,7 +201,7 @@ fn points_have_a_size() {
         assert_eq!(message(dots().build(&read)), expected);
         let written = replaced(device, &[("test/asymmetric.vert", &text("gl_PointSize = 1.0;"))]).unwrap();
         let dots = dots().build(&written).unwrap();
-        run(device, Mode::Plain, |frame| frame.graphics(&dots, |draw| _ = draw.vertices(1))).unwrap();
+        run(device, Mode::Plain, |frame| frame.graphics(&dots, |draw| draw.vertices(1))).unwrap();
         let painted: Vec<[u8; 4]> = texels(device, &target);
         assert_eq!(painted.iter().filter(|texel| texel[0] == 255).count(), 1);
     });
@@ -341,7 +346,7 @@ fn views_of_one_image_are_sampled_by_several_stages() {
         run(device, Mode::Plain, |frame| {
             paint(frame, &fill[0], 0.5)?;
             paint(frame, &fill[1], 0.25)?;
-            frame.graphics(&look, |draw| _ = draw.vertices(3))
+            frame.graphics(&look, |draw| draw.vertices(3))
         })
         .unwrap();
         assert_eq!(texels::<[f32; 2]>(device, &target), [[0.5, 0.25]]);

@@ -43,7 +43,7 @@ fn depth_is_cleared_to_what_it_can_hold() {
         }
         for value in [0.0, 1.0] {
             let pass = draw(value).unwrap();
-            run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.vertices(3))).unwrap();
+            run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
         }
     });
 }
@@ -121,7 +121,10 @@ fn counting_draws_write_no_attachment_that_is_read_only() {
         let second = draw("second", Load::Keep, DepthTest::LessReadOnly, DepthTest::EqualReadOnly).unwrap();
         run(device, Mode::Plain, |frame| {
             for pass in [&first, &second] {
-                frame.graphics(pass, |draw| _ = draw.vertices(3).counting(true).vertices(3))?;
+                frame.graphics(pass, |draw| {
+                    draw.vertices(3);
+                    draw.counting(true).vertices(3);
+                })?;
             }
             Ok(())
         })

@@ -20,12 +20,7 @@ fn draw_asymmetric(device: &Arc<Device>, compiler: Compiler) -> Vec<[f32; 4]> {
         .build(&ShaderLibrary::new(device, compiler, None).unwrap())
         .unwrap();
     assert_eq!(pass.info().compiler, Some(compiler));
-    run(device, Mode::Plain, |frame| {
-        frame.graphics(&pass, |draw| {
-            draw.vertices(3);
-        })
-    })
-    .unwrap();
+    run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
     texels(device, &target)
 }
 
@@ -67,12 +62,7 @@ fn rows_go_down_and_columns_to_the_right() {
             .color(&target, Load::Discard, Blend::Replace)
             .build(&shaders(device))
             .unwrap();
-        run(device, Mode::Plain, |frame| {
-            frame.graphics(&pass, |draw| {
-                draw.vertices(3);
-            })
-        })
-        .unwrap();
+        run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
         let expected: Vec<u32> = (0..5).flat_map(|row| (0..7).map(move |column| column + 256 * row)).collect();
         assert_eq!(texels::<u32>(device, &target), expected);
     });

@@ -31,11 +31,7 @@ fn assert_refused<T>(outcome: Result<T, Error>, pass_name: &str, resource_name: 
 /// Records `pass` alone, then shows that the recorder still works.
 fn assert_graphics_refused(device: &Arc<Device>, pass: &Pass, resource_name: &str) {
     let mut recorder = Recorder::new(device).unwrap();
-    let outcome = recorder.run(Mode::Plain, |frame| {
-        frame.graphics(pass, |draw| {
-            draw.vertices(3);
-        })
-    });
+    let outcome = recorder.run(Mode::Plain, |frame| frame.graphics(pass, |draw| draw.vertices(3)));
     assert_refused(outcome, pass.info().name, resource_name);
     let target = color_target(device, "next", vk::Format::R32_SFLOAT, 4, 4);
     let next = paint_pass(&shaders(device), "next", &target, BLACK, Blend::Replace);

@@ -38,9 +38,7 @@ impl Paper for Diary {
 
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.entries.push(Some(number));
-        frame.graphics(&self.fill, |draw| {
-            draw.vertices(3);
-        })
+        frame.graphics(&self.fill, |draw| draw.vertices(3))
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {

@@ -35,9 +35,7 @@ fn two_layers_written_by_two_passes_are_read_together() {
             let sample = run(device, Mode::Plain, |frame| {
                 paint(frame, &first, a)?;
                 paint(frame, &second, b)?;
-                frame.graphics(&look, |draw| {
-                    draw.vertices(3);
-                })
+                frame.graphics(&look, |draw| draw.vertices(3))
             })
             .unwrap();
             assert_eq!(texels::<[f32; 4]>(device, &seen), [[a, b, 0.0, 1.0]; 64]);
@@ -53,9 +51,7 @@ fn two_layers_written_by_two_passes_are_read_together() {
         run(device, Mode::Plain, |frame| {
             paint(frame, &clear_first, 11.0)?;
             frame.graphics(&clear_second, |_| {})?;
-            frame.graphics(&look_other, |draw| {
-                draw.vertices(3);
-            })
+            frame.graphics(&look_other, |draw| draw.vertices(3))
         })
         .unwrap();
         assert_eq!(texels::<[f32; 4]>(device, &seen), [[11.0, 0.0, 0.0, 1.0]; 64]);
@@ -106,15 +102,9 @@ fn stored_values_are_fetched_as_vertices_and_stored_again() {
         let copy = Pass::copy("copy-out", "", &buffer, &readback);
         let constants = Advance { value_count: 15, step: 1.0 };
         let sample = run(device, Mode::Plain, |frame| {
-            frame.compute(&advance, |dispatch| {
-                dispatch.constants(&constants).threads(15, 1, 1);
-            })?;
-            frame.graphics(&draw, |draw| {
-                draw.vertices(3);
-            })?;
-            frame.compute(&advance, |dispatch| {
-                dispatch.constants(&constants).threads(15, 1, 1);
-            })?;
+            frame.compute(&advance, |dispatch| dispatch.constants(&constants).threads(15, 1, 1))?;
+            frame.graphics(&draw, |draw| draw.vertices(3))?;
+            frame.compute(&advance, |dispatch| dispatch.constants(&constants).threads(15, 1, 1))?;
             frame.copy(&copy)
         })
         .unwrap();
@@ -159,11 +149,7 @@ fn depth_is_written_tested_read_only_read_back_and_tested_again() {
         let passes = [&write, &equal, &equal, &less, &write_again, &equal];
         for _ in 0..2 {
             run(device, Mode::Plain, |frame| {
-                passes.into_iter().try_for_each(|pass| {
-                    frame.graphics(pass, |draw| {
-                        draw.vertices(3);
-                    })
-                })
+                passes.into_iter().try_for_each(|pass| frame.graphics(pass, |draw| draw.vertices(3)))
             })
             .unwrap();
             assert_eq!(texels::<f32>(device, &depth), [0.5; 64]);

@@ -105,12 +105,7 @@ fn points_cover_their_size() {
             .color(&target, BLACK, Blend::Add)
             .build(&shaders(device))
             .unwrap();
-        run(device, Mode::Plain, |frame| {
-            frame.graphics(&pass, |draw| {
-                draw.vertices(1);
-            })
-        })
-        .unwrap();
+        run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(1))).unwrap();
         let found: Vec<[f32; 4]> = texels(device, &target);
         // 4 texels a side, as `test/splat-point.vert` says, around (4, 6).
         for (i, texel) in found.iter().enumerate() {
@@ -138,11 +133,7 @@ fn host_writes_of_any_length_may_be_drawn_again_and_again() {
             .build(&shaders(device))
             .unwrap();
         let draw = |count: u32| {
-            run(device, Mode::Plain, |frame| {
-                frame.graphics(&pass, |draw| {
-                    draw.constants(&QUAD).instances(4, count);
-                })
-            })
+            run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.constants(&QUAD).instances(4, count)))
         };
         // All of it is bound, so all of it must hold something.
         buffer.write(0, bytemuck::bytes_of(&SPLATS[0])).unwrap();

@@ -120,12 +120,7 @@ fn a_mode_measures_what_it_says_and_nothing_else() {
             .build(&shaders(device))
             .unwrap();
         for mode in [Mode::Plain, Mode::Bracketed, Mode::Timestamped, Mode::Counted] {
-            let sample = run(device, mode, |frame| {
-                frame.graphics(&pass, |draw| {
-                    draw.vertices(3);
-                })
-            })
-            .unwrap();
+            let sample = run(device, mode, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
             let one = &sample.passes[0];
             assert_eq!(sample.bracket_ms.is_some(), mode == Mode::Bracketed, "{mode:?}");
             assert_eq!(one.gpu_ms.is_some(), mode == Mode::Timestamped, "{mode:?}");

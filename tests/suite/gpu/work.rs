@@ -131,18 +131,10 @@ fn copies_and_fetches_are_certain_and_indexed_vertices_are_not() {
                     .color(&target, Load::Discard, Blend::Replace)
             };
         let loose = grid().build(&shaders(device)).unwrap();
-        let work = work_of(device, |frame| {
-            frame.graphics(&loose, |draw| {
-                draw.vertices(3);
-            })
-        });
+        let work = work_of(device, |frame| frame.graphics(&loose, |draw| draw.vertices(3)));
         assert_eq!(work.bytes, bytes(3 * 20, PIXELS * 4));
         let indexed = grid().indices(&indices).build(&shaders(device)).unwrap();
-        let work = work_of(device, |frame| {
-            frame.graphics(&indexed, |draw| {
-                draw.indices(3);
-            })
-        });
+        let work = work_of(device, |frame| frame.graphics(&indexed, |draw| draw.indices(3)));
         assert_eq!(work.bytes, bytes(3 * 4, PIXELS * 4));
         assert_eq!(work.bytes_at_most, Some(bytes(3 * 4 + 4 * 20, PIXELS * 4)));
         assert_eq!(work.uncertain, ["vertices"]);

@@ -17,10 +17,10 @@ pub use march::March;
 
 use super::grid::{Filter, Grid};
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
-use crate::field;
-use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Size};
+use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
+use crate::{field, size_field};
 
 /// The ways of shadowing by the gas (section "Shadowing of the gas", figure 8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -387,14 +387,7 @@ impl Parameters {
                 .help("Camera: eye and target, x,y,z,x,y,z in metres")
                 .default_text("the scene's")
                 .unrecorded(),
-            Parameter::new("size", SIZE)
-                .range(Range::from(1.0))
-                .unit("pixel")
-                .help("Size of the picture")
-                .default_text("the figure's")
-                .cost(Cost::Buffers)
-                .everyday()
-                .unrecorded(),
+            parameter::size(size_field!(Parameters)).default_text("the figure's"),
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of noise and jitter")
                 .cost(Cost::Buffers)
@@ -430,11 +423,6 @@ impl Parameters {
         ParameterError::check_camera(&self.camera)
     }
 }
-
-const SIZE: Field<Parameters, Size> = Field {
-    get: |p| Size { width: p.width, height: p.height },
-    set: |p, size| (p.width, p.height) = (size.width, size.height),
-};
 
 const FROXELS: Field<Parameters, Extents<u32, 3>> =
     Field { get: |p| Extents(p.froxels), set: |p, froxels| p.froxels = froxels.0 };

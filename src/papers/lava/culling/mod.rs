@@ -153,9 +153,7 @@ impl Culling {
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let CullConstants { clusters, .. } = self.constants;
         for (pass, elements) in [(&self.cull, clusters), (&self.cull_sum, 1), (&self.cull_compact, clusters)] {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).elements(elements);
-            })?;
+            frame.compute(pass, |dispatch| dispatch.constants(&self.constants).elements(elements))?;
         }
         Ok(())
     }

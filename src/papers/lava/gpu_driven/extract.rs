@@ -55,8 +55,6 @@ impl Extract {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [columns, _, rows] = self.constants.grid;
-        frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&self.constants).threads(columns, rows, 1);
-        })
+        frame.compute(&self.pass, |dispatch| dispatch.constants(&self.constants).threads(columns, rows, 1))
     }
 }

@@ -171,9 +171,7 @@ impl Sort {
     pub fn record(&self, frame: &mut Frame<'_>, state: usize, particles: u32) -> Result<(), Error> {
         let constants = CellConstants { particles, ..self.constants };
         let listed = |frame: &mut Frame<'_>, pass: &Pass, count: u32| {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(&constants).elements(count);
-            })
+            frame.compute(pass, |dispatch| dispatch.constants(&constants).elements(count))
         };
         let Counts { blocks, first_sum, second_sum, third_sum } = Counts::of(particles);
         let sums = [[0, first_sum], [first_sum, second_sum], [second_sum, third_sum]]
@@ -181,17 +179,11 @@ impl Sort {
         listed(frame, &self.cell_keys[state], particles)?;
         for Digit { sort_count, sort_scatter, shift } in &self.digits {
             let constants = SortConstants { items: particles, blocks, shift: *shift, first_sum, second_sum };
-            frame.compute(sort_count, |dispatch| {
-                dispatch.constants(&constants).elements(blocks);
-            })?;
+            frame.compute(sort_count, |dispatch| dispatch.constants(&constants).elements(blocks))?;
             for sum in &sums {
-                frame.compute(&self.sort_sum, |dispatch| {
-                    dispatch.constants(sum).elements(sum.count.div_ceil(RUN));
-                })?;
+                frame.compute(&self.sort_sum, |dispatch| dispatch.constants(sum).elements(sum.count.div_ceil(RUN)))?;
             }
-            frame.compute(sort_scatter, |dispatch| {
-                dispatch.constants(&constants).elements(blocks);
-            })?;
+            frame.compute(sort_scatter, |dispatch| dispatch.constants(&constants).elements(blocks))?;
         }
         listed(frame, &self.arrange[state], particles.max(constants.pieces))?;
         listed(frame, &self.cell_starts, self.cell_count + 1)
