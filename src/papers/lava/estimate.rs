@@ -37,7 +37,8 @@ impl Parameters {
             Simulation::Free => Estimate::default(),
             Simulation::Sph => sph::estimate(self),
         };
-        let heights = 4.0 * f64::from(self.density[0]) * f64::from(self.density[2]);
+        let detail = f64::from(self.flow.crust.detail(self).unwrap_or(1));
+        let heights = 4.0 * detail * detail * f64::from(self.density[0]) * f64::from(self.density[2]);
         let (drawn_bytes, buffers, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
                 let splat_bytes = 8.0 * splats + culling::bytes(self);

@@ -48,6 +48,7 @@ mod read_back;
 mod read_density;
 mod read_positions;
 pub mod reference;
+pub mod relief;
 mod rock;
 mod scene;
 pub mod setup;
@@ -64,6 +65,7 @@ use self::lava_light::LavaLight;
 use self::normal_height::NormalHeight;
 use self::objects::Objects;
 use self::particles::ParticlePoints;
+use self::relief::Relief;
 use self::sph::surface_temperature::SurfaceTemperature;
 use self::targets::Context;
 use crate::gpu::transfer::read_image;
@@ -122,6 +124,8 @@ pub struct Lava {
     pub normal_height: NormalHeight,
     /// Its temperatures; `None` of particles that have none.
     pub surface_temperature: Option<SurfaceTemperature>,
+    /// `None` without ropes and pieces.
+    pub relief: Option<Relief>,
     /// Stage three.
     pub splatting: Splatting,
     /// `None` of free particles.
@@ -171,6 +175,9 @@ impl Paper for Lava {
         self.normal_height.record(frame)?;
         if let (Some(sph), Some(surface_temperature)) = (self.animate.sph(), &self.surface_temperature) {
             surface_temperature.record(frame, sph, self.animate.steps())?;
+        }
+        if let Some(relief) = &self.relief {
+            relief.record(frame)?;
         }
         self.splatting.record(frame, self.drift_m(number))?;
         if let Some(lava_light) = &self.lava_light {
@@ -257,6 +264,16 @@ impl Paper for Lava {
                 Target::image("surface-carried", &pass.carried).of(carried),
             ]
         });
+        let of_relief = self.relief.iter().flat_map(|relief| {
+            [
+                Target::image("surface-motion", &relief.motion)
+                    .of("speed along x and z in metres per second, mean temperature of the lava in kelvin, its depth in metres"),
+                Target::image("crust-normals", &relief.normal_height)
+                    .of("x, y, z of the crust's unit normal, its height in metres"),
+                Target::image("crust-temperatures", &relief.temperatures)
+                    .of("temperature in kelvin, 1 where any lava is near, share of the rock's first laying"),
+            ]
+        });
         let of_deferred = self.splatting.deferred().into_iter().flat_map(|deferred| {
             [
                 Target::image("blended-normals", &deferred.normals)
@@ -279,7 +296,7 @@ impl Paper for Lava {
             Target::image("picture", &self.splatting.normalisation.picture)
                 .of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
         ];
-        targets.into_iter().chain(of_a_fluid).chain(of_deferred).collect()
+        targets.into_iter().chain(of_a_fluid).chain(of_relief).chain(of_deferred).collect()
     }
 }
 
@@ -311,12 +328,15 @@ impl Lava {
         let surface_temperature =
             animate.sph().map(|sph| SurfaceTemperature::new(context, sph, surface)).transpose()?;
         let fluid = animate.sph().zip(surface_temperature.as_ref());
-        let fluid = fluid.map(|(sph, pass)| FluidSheet {
-            temperatures: pass.temperatures.clone(),
-            carried: pass.carried.clone(),
-            bed: sph.bed.clone(),
+        let relief = fluid.map(|(sph, pass)| Relief::new(context, sph, surface, pass)).transpose()?.flatten();
+        let fluid = fluid.map(|(sph, pass)| {
+            let of_pass = (&pass.temperatures, &pass.carried);
+            let (temperatures, carried) =
+                relief.as_ref().map_or(of_pass, |relief| (&relief.temperatures, &relief.carried));
+            FluidSheet { temperatures: temperatures.clone(), carried: carried.clone(), bed: sph.bed.clone() }
         });
-        let sheet = Sheet { normal_height: surface, fluid: fluid.as_ref() };
+        let drawn = relief.as_ref().map_or(surface, |relief| &relief.normal_height);
+        let sheet = Sheet { normal_height: drawn, fluid: fluid.as_ref() };
         let splatting = Splatting::new(shaders, label, parameters, sheet, rock, instanced, draw)?;
         let Splatting { scene, depth, normalisation, .. } = &splatting;
         let view_warnings = view_warnings(parameters, objects);
@@ -338,6 +358,7 @@ impl Lava {
             method,
             normal_height,
             surface_temperature,
+            relief,
             splatting,
             lava_light,
             objects,

@@ -39,6 +39,7 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         "must be above 0, and so short that gravity alone moves lava by no more than 2.4 distances of its particles",
     )?;
     check_heat(flow, &scale)?;
+    flow.crust.check(parameters)?;
     flow.vent.check(parameters)?;
     let needed = chebyshev::needed(scale.stiffness * scale.stiffest);
     let (name, viscosity_pa_s) = match flow.heat.rheology {

@@ -14,6 +14,7 @@
 pub mod bed;
 pub mod chebyshev;
 pub mod check;
+pub mod crust;
 pub mod heat;
 pub mod kernel;
 pub mod parameters;
@@ -64,7 +65,7 @@ use crate::host_block;
 use crate::measure::estimate::Estimate;
 
 host_block! {
-    struct FlowConstants {
+    pub(super) struct FlowConstants {
         space_m: [f32; 3],
         particles: u32,
         counts: [u32; 3],
@@ -123,7 +124,8 @@ pub struct Sph {
     correct: [Pass; 2],
     /// From each state.
     finish: [Pass; 3],
-    constants: FlowConstants,
+    /// Of a step, but for what changes from one to the next.
+    pub(super) constants: FlowConstants,
     coefficients: Vec<Coefficients>,
     corrections: u32,
     /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
@@ -383,7 +385,7 @@ impl Sph {
 }
 
 /// Begins a pass over the particles by cells.
-fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
+pub(super) fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
     let [xs, ys, zs] = &sort.places;
     Pass::compute(name, "9", shader)
         .constants::<FlowConstants>()
@@ -418,11 +420,16 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let iterations =
         chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 2.0;
     let [columns, _, rows] = parameters.density.map(f64::from);
+    let detail = f64::from(parameters.flow.crust.detail(parameters).unwrap_or(0));
+    let crust = detail * detail * columns * rows;
     Estimate {
-        bytes: vec![("particles", 164.0 * particles + sort::bytes(&cells)), ("density", 2.0 * TEXEL * columns * rows)],
+        bytes: vec![
+            ("particles", 164.0 * particles + sort::bytes(&cells)),
+            ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
+        ],
         buffers: vec![("particles", 16.0 * particles)],
         passes: Some(("corrections", iterations as u64 + 24)),
-        invocations: vec![("particles", particles * looked_at * iterations)],
+        invocations: vec![("particles", particles * looked_at * iterations), ("density", 2.0 * crust * looked_at)],
         ..Estimate::default()
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::crust::Crust;
 use super::heat::Heat;
 use super::vent::Vent;
 use crate::field;
@@ -61,6 +62,8 @@ pub struct Flow {
     pub renewal_s: f32,
     /// Heat, and what it makes of the viscosity.
     pub heat: Heat,
+    /// Relief of its crust.
+    pub crust: Crust,
     /// Vent that it comes out of, if it does not stand there at the start.
     pub vent: Vent,
 }
@@ -77,6 +80,7 @@ impl Default for Flow {
             corrections: 12,
             renewal_s: 4.0,
             heat: Heat::default(),
+            crust: Crust::default(),
             vent: Vent::default(),
         }
     }
@@ -140,7 +144,8 @@ impl Flow {
                 .cost(Cost::Buffers),
         ];
         let vent = Vent::declared().into_iter().map(|p| p.inside(|s: &Self| &s.vent, |s| &mut s.vent));
-        motion.into_iter().chain(heat).chain(vent).collect()
+        let crust = Crust::declared().into_iter().map(|p| p.inside(|s: &Self| &s.crust, |s| &mut s.crust));
+        motion.into_iter().chain(heat).chain(crust).chain(vent).collect()
     }
 
     /// Name and value of the first number that is not the default's.
