@@ -1,6 +1,6 @@
 //! CPU time of the papers' inputs: loading the shipped meshes and height maps, tessellating, computing normals, ordering
 //! for the vertex cache (and what a device's vertex stage runs before and after), sampling the volcano, building a pyramid
-//! of maxima, clustering particles.
+//! of maxima, also on the device and beside a copy of the map, a million segments that meet the land, clustering particles.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use fumarole::gpu::Mode;
@@ -12,9 +12,13 @@ use fumarole::papers::caustics::setup::{Scene, Setup};
 use fumarole::papers::caustics::{ReceiverInput, Variant};
 use fumarole::papers::{lava, terrain};
 use fumarole::scene::loading::{Conditions, LoadParts};
+use fumarole::scene::random::Random;
 use fumarole::scene::{HeightMapSource, Mesh, MeshOptions, MeshSource, shapes, volcano};
+use std::fmt::Write as _;
 use std::hint::black_box;
 use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
 
 fn files(criterion: &mut Criterion) {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
@@ -79,6 +83,95 @@ fn pyramids(criterion: &mut Criterion) {
             bencher.iter(|| terrain::Pyramid::build(shape, black_box(samples), terrain::Bound::Highest));
         });
     }
+}
+
+/// Samples a side of the largest pyramid, and the copies of its map that may be made while the processor builds it.
+const LARGE_SIDE: u32 = 8_192;
+const MOST_COPIES: f64 = 10.0;
+
+/// Milliseconds that `work` takes.
+fn ms<R>(work: impl FnOnce() -> R) -> f64 {
+    let start = Instant::now();
+    black_box(work());
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// The levels of a large map in turn with one copy of it: by the processor, of both kinds of texels, and by the device, which has
+/// a copy of the map made as well.
+///
+/// # Panics
+/// The processor takes longer than [`MOST_COPIES`].
+fn large_pyramid(_: &mut Criterion) {
+    let map = volcano(LARGE_SIDE, 1).expect("a valid side");
+    let samples: &[u16] = terrain::Texel::samples_of(&map);
+    let mut copy = samples.to_vec();
+    let shape = terrain::Shape::new(map.width(), map.height());
+    let machine = Machine::open(&MachineOptions::default(), &terrain::NEEDS);
+    let cells = terrain::Cover::Cells(terrain::Interpolation::Bilinear);
+    let names = ["copy", "nodes", "cells", "upload", "device, nodes", "device, cells"];
+    let mut times = names.map(|_| Vec::new());
+    let highest = terrain::Bound::Highest;
+    for _ in 0..LOADS {
+        let mut row = vec![ms(|| copy.copy_from_slice(black_box(samples)))];
+        for cover in [terrain::Cover::Nodes, cells] {
+            row.push(ms(|| terrain::Pyramid::covering(shape, black_box(samples), (highest, cover))));
+        }
+        if let Ok(machine) = &machine {
+            for (bounds, cover) in
+                [(&[][..], terrain::Cover::Nodes), (&[highest], terrain::Cover::Nodes), (&[highest], cells)]
+            {
+                row.push(ms(|| terrain::Levels::new(&machine.shaders, "bench", &map, bounds, cover).expect("levels")));
+            }
+        }
+        times.iter_mut().zip(row).for_each(|(times, time)| times.push(time));
+    }
+    let medians = times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).copied()
+    });
+    let copy_ms = medians[0].expect("a copy was timed");
+    for (name, median) in names.iter().zip(medians) {
+        match median {
+            Some(ms) => {
+                eprintln!("maxima of {LARGE_SIDE} x {LARGE_SIDE}, {name}: {ms:.1} ms, {:.1} copies", ms / copy_ms)
+            }
+            None => eprintln!("SKIPPED: {name}: no device opens"),
+        }
+    }
+    for ms in medians[1..3].iter().flatten() {
+        assert!(ms / copy_ms <= MOST_COPIES, "a pyramid takes {:.1} copies of its map", ms / copy_ms);
+    }
+}
+
+/// Segments of a file.
+const SEGMENTS: usize = 1_000_000;
+
+/// A million segments over the volcano, from a file to lines: the program says how long it reads, meets and writes them.
+fn bodies(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder for the files");
+    let path = folder.path().join("bodies.csv");
+    let mut random = Random::new(1);
+    let mut text = String::with_capacity(SEGMENTS * 48);
+    for _ in 0..SEGMENTS {
+        let [x, z] = [(); 2].map(|()| random.range(-5500.0, 5500.0));
+        let [east, south] = [(); 2].map(|()| random.range(-300.0, 300.0));
+        let [high, low] = [random.range(800.0, 2500.0), random.range(0.0, 900.0)];
+        let _ = writeln!(text, "{x:.1},{high:.1},{z:.1},{:.1},{low:.1},{:.1}", x + east, z + south);
+    }
+    std::fs::write(&path, text).expect("room for the file");
+    let mut said = String::new();
+    let mut group = criterion.benchmark_group("collide");
+    group.sample_size(10).throughput(Throughput::Elements(SEGMENTS as u64));
+    group.bench_function(format!("{SEGMENTS} segments of a file, the land made as well"), |bencher| {
+        bencher.iter(|| {
+            let mut program = Command::new(env!("CARGO_BIN_EXE_fumarole"));
+            let program = program.args(["terrain", "collide", "--bodies"]).arg(&path).stdout(Stdio::null());
+            let output = program.output().expect("the program runs");
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        });
+    });
+    eprintln!("the last of them: {said}");
 }
 
 fn clustering(criterion: &mut Criterion) {
@@ -247,5 +340,17 @@ fn normals(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, files, large, vertex_order, maps, pyramids, clustering, tessellation, normals);
+criterion_group!(
+    benches,
+    files,
+    large,
+    vertex_order,
+    maps,
+    pyramids,
+    large_pyramid,
+    bodies,
+    clustering,
+    tessellation,
+    normals
+);
 criterion_main!(benches);

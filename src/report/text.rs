@@ -5,7 +5,7 @@ use std::borrow::Cow;
 /// The text with its control characters, and those that turn the direction of writing about, as JSON writes them:
 /// `\u001b`. Line breaks stay, and so do styles (bold, dim, colours) where `has_styles`.
 pub fn escaped(text: &str, has_styles: bool) -> Cow<'_, str> {
-    if !text.contains(is_hidden) {
+    if is_plain(text) || !text.contains(is_hidden) {
         return Cow::Borrowed(text);
     }
     let mut shown = String::with_capacity(text.len() + 16);
@@ -26,6 +26,12 @@ pub fn escaped(text: &str, has_styles: bool) -> Cow<'_, str> {
 /// [`escaped`] on one line.
 pub fn one_line(text: &str) -> String {
     escaped(text, false).replace('\n', "\\u000a")
+}
+
+/// Printable ASCII and line breaks alone. Blocks are looked at as a whole: an output may have a hundred million characters.
+fn is_plain(text: &str) -> bool {
+    let is_plain = |byte: &u8| matches!(byte, b'\n' | b' '..=b'~');
+    text.as_bytes().chunks(64).all(|block| block.iter().fold(true, |all, byte| all & is_plain(byte)))
 }
 
 fn is_hidden(character: char) -> bool {

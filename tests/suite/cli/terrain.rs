@@ -151,7 +151,7 @@ fn bodies_of_a_file_meet_the_land() {
         (ended.stdout.lines().map(str::to_owned).collect::<BTreeSet<_>>(), ended.stderr)
     };
     let (of_file, said) = of("--bodies bodies.csv");
-    assert!(said.contains("3 bodies in"), "{said}");
+    assert!(said.contains("3 bodies read in") && said.contains(" written in "), "{said}");
     assert_eq!(of_file, of("--segment 1,200,2,1,0,2 --sphere 0,104,0,5 --segment -50,50,0,50,50,0").0);
     assert_eq!(of_file.len(), 3);
     let record = terrain("collide --map table.asc --base-level 0 --json --bodies bodies.csv").inside(out.path()).run();

@@ -12,10 +12,11 @@ use crate::measure::parameter::Value;
 
 /// The longest file, bytes: some ten million bodies.
 const MOST_BYTES: u64 = 1 << 30;
-/// Bytes of the shortest line with a body.
-const SHORTEST: usize = "0,0,0,1\n".len();
-/// Lines that are read at once.
-const TOGETHER: usize = 1 << 16;
+/// Bytes of the pieces, or a little more, that are read at once.
+const PIECE_BYTES: usize = 1 << 18;
+
+/// A line that is no body: its number in its piece, from 1 on, and the reason.
+type Refused = (usize, String);
 
 /// The bodies of a CSV file: six numbers a line for a segment, four for a sphere, as the options have them. Empty lines, those
 /// that begin with `#`, and a heading in the first are passed over.
@@ -25,26 +26,45 @@ const TOGETHER: usize = 1 << 16;
 pub fn read(path: &Path) -> Result<Vec<Body>, Error> {
     let failed = |reason: String| Error::Input(format!("`bodies` {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
-    let is_told = |&(number, line): &(u64, &str)| {
-        let is_passed_over = line.is_empty() || line.starts_with('#') || (number == 1 && is_heading(line));
-        !is_passed_over
-    };
-    let mut lines = (1_u64..).zip(text.lines().map(str::trim)).filter(is_told);
-    let mut read = Vec::with_capacity(lines.clone().count().min(text.len() / SHORTEST + 1));
-    loop {
-        let together: Vec<(u64, &str)> = lines.by_ref().take(TOGETHER).collect();
-        if together.is_empty() {
-            break;
-        }
-        let bodies: Vec<Result<Body, String>> = together.par_iter().map(|(_, line)| body(line)).collect();
-        for ((number, _), body) in together.into_iter().zip(bodies) {
-            read.push(body.map_err(|reason| failed(format!("line {number}: {reason}")))?);
-        }
+    let pieces = pieces(&text);
+    let read: Vec<Result<Vec<Body>, Refused>> =
+        pieces.par_iter().enumerate().map(|(number, piece)| bodies(piece, number == 0)).collect();
+    let mut all = Vec::with_capacity(read.iter().flatten().map(Vec::len).sum());
+    for (number, bodies) in read.into_iter().enumerate() {
+        all.append(&mut bodies.map_err(|(line, reason)| {
+            let before: usize = pieces[..number].iter().map(|piece| piece.lines().count()).sum();
+            failed(format!("line {}: {reason}", before + line))
+        })?);
     }
-    if read.is_empty() {
+    if all.is_empty() {
         return Err(failed("it has no body; give X,Y,Z,X,Y,Z or X,Y,Z,R a line".into()));
     }
-    Ok(read)
+    Ok(all)
+}
+
+/// A text in pieces of whole lines.
+fn pieces(text: &str) -> Vec<&str> {
+    let mut pieces = Vec::with_capacity(text.len() / PIECE_BYTES + 1);
+    let mut rest = text;
+    while !rest.is_empty() {
+        let more = rest.as_bytes().iter().skip(PIECE_BYTES).position(|&byte| byte == b'\n');
+        let (piece, after) = rest.split_at(more.map_or(rest.len(), |more| PIECE_BYTES + more + 1));
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces
+}
+
+/// The bodies of a piece, whose first line may be a heading if it is the file's.
+fn bodies(piece: &str, is_first: bool) -> Result<Vec<Body>, Refused> {
+    let mut bodies = Vec::with_capacity(piece.lines().count());
+    for (number, line) in (1..).zip(piece.lines().map(str::trim)) {
+        let is_passed_over = line.is_empty() || line.starts_with('#') || (is_first && number == 1 && is_heading(line));
+        if !is_passed_over {
+            bodies.push(body(line).map_err(|reason| (number, reason))?);
+        }
+    }
+    Ok(bodies)
 }
 
 /// No field is a number.
@@ -54,9 +74,47 @@ fn is_heading(line: &str) -> bool {
 
 fn body(line: &str) -> Result<Body, String> {
     let body = match line.split(',').count() {
-        6 => <[f64; 6]>::parse(&[OsStr::new(line)]).map(|numbers| Body::from(&numbers)),
-        4 => <[f64; 4]>::parse(&[OsStr::new(line)]).map(|numbers| Body::from(&numbers)),
-        count => Err(format!("it has {count} fields; a segment has six numbers, a sphere four")),
+        6 => Body::from(&numbers::<6>(line)?),
+        4 => Body::from(&numbers::<4>(line)?),
+        count => return Err(format!("it has {count} fields; a segment has six numbers, a sphere four")),
     };
-    body.and_then(|body| body.check().map_err(|error| error.to_string()).map(|()| body))
+    body.check().map_err(|error| error.to_string())?;
+    Ok(body)
+}
+
+/// The fields of a line that has so many.
+fn numbers<const N: usize>(line: &str) -> Result<[f64; N], String> {
+    let mut numbers = [0.0; N];
+    for (number, field) in numbers.iter_mut().zip(line.split(',')) {
+        *number = f64::parse(&[OsStr::new(field.trim())])?;
+    }
+    Ok(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a file of several pieces every line comes once, and one that is no body has its number in the file.
+    #[test]
+    fn pieces_are_read_as_the_whole() {
+        let count = 3 * PIECE_BYTES / "1234,2,3,4\n".len();
+        let lines: Vec<String> = (1..=count).map(|x| format!("{x},2,3,4")).collect();
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("bodies.csv");
+        std::fs::write(&path, lines.join("\r\n")).expect("room for the file");
+        assert!(pieces(&lines.join("\n")).len() > 2);
+        let all = read(&path).expect("bodies");
+        assert_eq!(all.len(), count);
+        for (x, body) in (1..).zip(all) {
+            assert_eq!(body, Body::from(&[f64::from(x), 2.0, 3.0, 4.0]));
+        }
+        for wrong in [1, count / 2, count] {
+            let mut lines = lines.clone();
+            lines[wrong - 1] = "1,2,x,4".to_owned();
+            std::fs::write(&path, lines.join("\n")).expect("room for the file");
+            let reason = read(&path).expect_err("no body").to_string();
+            assert!(reason.contains(&format!("line {wrong}: ")), "{reason}");
+        }
+    }
 }

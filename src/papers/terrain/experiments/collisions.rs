@@ -59,19 +59,18 @@ impl Body {
     /// # Errors
     /// [`Error::Parameter`] for one without extent or too far away.
     pub fn check(&self) -> Result<(), Error> {
-        let (name, places, is_body, what) = match *self {
-            Body::Segment { from, to } => ("segment", vec![from, to], from != to, "has no length"),
+        let is_near = |place: DVec3| place.is_finite() && place.abs().max_element() <= FAR_M;
+        let (name, is_near, is_body, what) = match *self {
+            Body::Segment { from, to } => ("segment", is_near(from) && is_near(to), from != to, "has no length"),
             Body::Sphere { center, radius_m } => (
                 "sphere",
-                vec![center],
+                is_near(center),
                 radius_m > 0.0 && radius_m <= FAR_M,
                 "needs a radius of more than 0 to 100000 km",
             ),
         };
-        let value = self.to_string();
-        ParameterError::check(is_body, name, &value, what)?;
-        let is_near = places.iter().all(|place| place.is_finite() && place.abs().max_element() <= FAR_M);
-        ParameterError::check(is_near, name, &value, "must lie within 100000 km")?;
+        ParameterError::check(is_body, name, self, what)?;
+        ParameterError::check(is_near, name, self, "must lie within 100000 km")?;
         Ok(())
     }
 
@@ -141,29 +140,33 @@ impl Collision {
             }
         }
     }
+}
 
-    /// One line.
-    pub fn text(&self) -> String {
+/// One line.
+impl std::fmt::Display for Collision {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let kind = match self.body {
             Body::Segment { .. } => "segment",
             Body::Sphere { .. } => "sphere",
         };
         let body = &self.body;
-        let Some(m) = self.contact else { return format!("{kind} {body}: meets nothing\n") };
-        let what = match m.surface {
-            Surface::Base => "meets the base".to_owned(),
-            Surface::Inside if m.t.is_some() => "begins in the ground".to_owned(),
-            Surface::Inside => "has its centre in the ground".to_owned(),
-            surface => format!("meets the {} of map {}", surface.as_str(), m.map),
-        };
+        let Some(m) = self.contact else { return writeln!(formatter, "{kind} {body}: meets nothing") };
+        write!(formatter, "{kind} {body}: ")?;
+        match m.surface {
+            Surface::Base => formatter.write_str("meets the base"),
+            Surface::Inside if m.t.is_some() => formatter.write_str("begins in the ground"),
+            Surface::Inside => formatter.write_str("has its centre in the ground"),
+            surface => write!(formatter, "meets the {} of map {}", surface.as_str(), m.map),
+        }?;
         // No minus before a zero.
-        let rounded = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
-        let three = |v: DVec3, digits: usize| v.to_array().map(|c| format!("{:.digits$}", rounded(c))).join(",");
-        let place = match m.t {
-            Some(t) => format!("parameter {t:.6}, {:.3} m from its start", m.distance_m),
-            None => format!("{:.6} m from its centre", m.distance_m),
-        };
-        let (point, normal) = (three(m.point, 3), three(m.normal, 6));
-        format!("{kind} {body}: {what} at {point}, {place}, normal {normal}, {} steps\n", m.steps)
+        let rounded = |v: DVec3| v.to_array().map(|c| (c * 1e6).round() / 1e6 + 0.0);
+        let [x, y, z] = rounded(m.point);
+        write!(formatter, " at {x:.3},{y:.3},{z:.3}, ")?;
+        match m.t {
+            Some(t) => write!(formatter, "parameter {t:.6}, {:.3} m from its start", m.distance_m),
+            None => write!(formatter, "{:.6} m from its centre", m.distance_m),
+        }?;
+        let [x, y, z] = rounded(m.normal);
+        writeln!(formatter, ", normal {x:.6},{y:.6},{z:.6}, {} steps", m.steps)
     }
 }

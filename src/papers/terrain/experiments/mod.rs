@@ -6,7 +6,9 @@ pub mod figures;
 mod flight;
 pub mod table;
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use rayon::prelude::*;
 
@@ -269,9 +271,11 @@ fn heat_maps(context: &Context<'_>, points: &[Point<Setup>]) -> Result<(), Error
 fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     let Options { segments, spheres, bodies: file_of_bodies, .. } = &context.options;
     let mut bodies: Vec<Body> = segments.iter().map(Body::from).chain(spheres.iter().map(Body::from)).collect();
+    let started = Instant::now();
     if let Some(path) = file_of_bodies {
         bodies.extend(bodies::read(path)?);
     }
+    let read_s = started.elapsed().as_secs_f64();
     if bodies.is_empty() {
         let reason = "collide: there is nothing to collide; give a `segment`, a `sphere` or a file of `bodies`";
         return Err(Error::Input(reason.into()));
@@ -279,18 +283,41 @@ fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     let json = context.destinations.json.as_deref();
     let file = json.filter(|path| path.as_os_str() != "-");
     file.map_or(Ok(()), check_writable)?;
-    let (collisions, warnings, seconds) = collide(&context.setup, &bodies)?;
+    let (collisions, warnings, met_s) = collide(&context.setup, &bodies)?;
     warnings.iter().for_each(|warning| context.console.say(&format!("warning: {warning}")));
-    if file_of_bodies.is_some() {
-        context.console.say(&format!("{} bodies in {seconds:.3} s", bodies.len()));
-    }
+    let started = Instant::now();
     if json.is_some() {
         let record = experiment::json_text(&Record { collisions: &collisions, warnings: &warnings })?;
         match file {
             Some(path) => write(path, record.as_bytes())?,
-            None => return context.console.print(&record),
+            None => context.console.print(&record)?,
         }
     }
-    let lines: Vec<String> = collisions.par_iter().map(Collision::text).collect();
-    context.console.print(&lines.concat())
+    if json.is_none() || file.is_some() {
+        print_lines(context, &collisions)?;
+    }
+    if file_of_bodies.is_some() {
+        let (count, written_s) = (bodies.len(), started.elapsed().as_secs_f64());
+        let said = format!("{count} bodies read in {read_s:.3} s, met in {met_s:.3} s, written in {written_s:.3} s");
+        context.console.say(&said);
+    }
+    Ok(())
+}
+
+/// A line for each, of which some are there at once.
+fn print_lines(context: &Context<'_>, collisions: &[Collision]) -> Result<(), Error> {
+    /// Lines that one thread makes, and those that are printed together.
+    const LINES: usize = 1 << 10;
+    const TOGETHER: usize = 1 << 16;
+    for together in collisions.chunks(TOGETHER) {
+        let lines = together.par_chunks(LINES).map(|collisions| {
+            let mut lines = String::new();
+            for collision in collisions {
+                let _ = write!(lines, "{collision}");
+            }
+            lines
+        });
+        context.console.print(&lines.collect::<Vec<String>>().concat())?;
+    }
+    Ok(())
 }
