@@ -1,22 +1,15 @@
 //! The display's tone, of the papers whose light is linear.
 
-use crate::measure::parameter::Choice;
+use crate::choice;
 
-/// Fate of what is brighter than the display.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Tone {
-    /// Bent above 0.6, so that nothing reaches the display's end.
-    Shoulder,
-    /// Clipped at the display's end.
-    Clip,
-}
-
-impl Choice for Tone {
-    const ALL: &'static [Self] = &[Tone::Shoulder, Tone::Clip];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("shoulder", "As it is up to 0.6 of the display's range, above it ever less, so that nothing clips"),
-        ("clip", "Clipped, as by a frame buffer"),
-    ];
+choice! {
+    /// Fate of what is brighter than the display.
+    pub enum Tone {
+        /// Bent above 0.6, so that nothing reaches the display's end.
+        Shoulder = ("shoulder", "As it is up to 0.6 of the display's range, above it ever less, so that nothing clips"),
+        /// Clipped at the display's end.
+        Clip = ("clip", "Clipped, as by a frame buffer"),
+    }
 }
 
 impl Tone {

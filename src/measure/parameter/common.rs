@@ -34,3 +34,25 @@ macro_rules! size_field {
         }
     };
 }
+
+/// An enum that is a [`Choice`](crate::measure::parameter::Choice): each value with its name and its help, declared once.
+#[macro_export]
+macro_rules! choice {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis enum $enum:ident {
+            $($(#[$value_attribute:meta])* $value:ident = ($name:literal, $help:literal $(,)?)),* $(,)?
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        $visibility enum $enum {
+            $($(#[$value_attribute])* $value),*
+        }
+
+        impl $crate::measure::parameter::Choice for $enum {
+            const ALL: &'static [Self] = &[$($enum::$value),*];
+            const NAMES: &'static [(&'static str, &'static str)] = &[$(($name, $help)),*];
+        }
+    };
+}

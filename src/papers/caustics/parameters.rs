@@ -7,10 +7,10 @@ use glam::Vec3;
 pub use super::culled_map::CullSteps;
 pub use super::planes::SmartPlacement;
 use super::water_map::WaterMap;
-use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range};
+use crate::measure::parameter::{self, Cost, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
-use crate::{field, size_field};
+use crate::{choice, field, size_field};
 
 /// The methods that the thesis compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -60,21 +60,14 @@ pub struct SmartParameters {
     pub placement: SmartPlacement,
 }
 
-/// The places that the intensity of eq. 4-18 belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum IntensityRule {
-    /// A water triangle, as the thesis prints it: constant over the triangle, but for angle and absorption.
-    Face,
-    /// A vertex, by the triangles around it; interpolated between vertices. The flux is the same.
-    Vertex,
-}
-
-impl Choice for IntensityRule {
-    const ALL: &'static [Self] = &[IntensityRule::Face, IntensityRule::Vertex];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("face", "That of each water triangle, constant over it"),
-        ("vertex", "That of each vertex by the triangles around it, interpolated"),
-    ];
+choice! {
+    /// The places that the intensity of eq. 4-18 belongs to.
+    pub enum IntensityRule {
+        /// A water triangle, as the thesis prints it: constant over the triangle, but for angle and absorption.
+        Face = ("face", "That of each water triangle, constant over it"),
+        /// A vertex, by the triangles around it; interpolated between vertices. The flux is the same.
+        Vertex = ("vertex", "That of each vertex by the triangles around it, interpolated"),
+    }
 }
 
 /// The water's waves: a sum of sines with seeded directions and phases.
@@ -186,19 +179,12 @@ impl Default for Parameters {
     }
 }
 
-/// Names of [`SmartPlacement`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Placement {
-    Fitted,
-    Kept,
-}
-
-impl Choice for Placement {
-    const ALL: &'static [Self] = &[Placement::Fitted, Placement::Kept];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("fitted", "Planes fitted into the sub-boxes of valid levels"),
-        ("kept", "The uniform planes whose cell holds a texel"),
-    ];
+choice! {
+    /// Names of [`SmartPlacement`].
+    enum Placement {
+        Fitted = ("fitted", "Planes fitted into the sub-boxes of valid levels"),
+        Kept = ("kept", "The uniform planes whose cell holds a texel"),
+    }
 }
 
 const PLACEMENT: Field<Parameters, Placement> = Field {

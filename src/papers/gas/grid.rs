@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::measure::parameter::Choice;
+use crate::choice;
 
 /// Samples of the density of a volume, in the middle of whose box they lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,21 +17,17 @@ pub struct Grid {
     pub glow: Vec<[f32; 3]>,
 }
 
-/// Interpolation between the samples of a grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Filter {
-    /// Linear along each axis.
-    Trilinear,
-    /// Catmull's and Rom's cubic along each axis.
-    Tricubic,
-}
-
-impl Choice for Filter {
-    const ALL: &'static [Self] = &[Filter::Trilinear, Filter::Tricubic];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("trilinear", "Linear along each axis, of 8 samples"),
-        ("tricubic", "The cubic of Catmull and Rom along each axis, of 64 samples: smooth, and through the samples"),
-    ];
+choice! {
+    /// Interpolation between the samples of a grid.
+    pub enum Filter {
+        /// Linear along each axis.
+        Trilinear = ("trilinear", "Linear along each axis, of 8 samples"),
+        /// Catmull's and Rom's cubic along each axis.
+        Tricubic = (
+            "tricubic",
+            "The cubic of Catmull and Rom along each axis, of 64 samples: smooth, and through the samples",
+        ),
+    }
 }
 
 impl Grid {

@@ -8,24 +8,17 @@ use super::rays::{RayConstants, rays};
 use super::scene::Scene;
 use super::splats::Splats;
 use super::targets::{Context, FLOATS, ZERO};
+use crate::choice;
 use crate::gpu::{Blend, Error, Frame, ImageView, Pass};
-use crate::measure::parameter::Choice;
 
-/// Place of the colours of splats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SplatShading {
-    /// Section 7.2.
-    Gouraud,
-    /// Chapter 9.
-    Deferred,
-}
-
-impl Choice for SplatShading {
-    const ALL: &'static [Self] = &[SplatShading::Gouraud, SplatShading::Deferred];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("gouraud", "The thesis's: a colour for each splat, blended, which blurs the rock"),
-        ("deferred", "Normals and depths of the splats, blended, then a colour for each pixel"),
-    ];
+choice! {
+    /// Place of the colours of splats.
+    pub enum SplatShading {
+        /// Section 7.2.
+        Gouraud = ("gouraud", "The thesis's: a colour for each splat, blended, which blurs the rock"),
+        /// Chapter 9.
+        Deferred = ("deferred", "Normals and depths of the splats, blended, then a colour for each pixel"),
+    }
 }
 
 /// The passes.

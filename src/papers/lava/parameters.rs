@@ -11,10 +11,10 @@ use super::sph;
 use super::sph::parameters::{Flow, Simulation};
 use super::splats::SplatShape;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Value as _};
+use crate::measure::parameter::{self, Cost, Extents, Field, Parameter, Range, Value as _};
 pub use crate::papers::tone::Tone;
 use crate::scene::Camera;
-use crate::{field, size_field};
+use crate::{choice, field, size_field};
 
 /// The methods that are compared: the thesis's, and ours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -36,34 +36,22 @@ impl crate::measure::Variant for Variant {
     }
 }
 
-/// Colour of the splats: the lava, or one of the parts that figures 4.2, 4.3, 6.3, 6.4 and 7.3 show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// Colour times rock: the finished picture.
-    Lava,
-    /// The calculated colour alone (figures 4.3b and 7.3, left).
-    Color,
-    /// The rock texture alone.
-    Rock,
-    /// The normals of the surface as colours (figure 6.4).
-    Normals,
-    /// The heights of the surface as grey (figures 4.2c and 6.4).
-    Heights,
-    /// No surface: every particle as a point (figure 5.2).
-    Particles,
-}
-
-impl Choice for Shading {
-    const ALL: &'static [Self] =
-        &[Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights, Shading::Particles];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("lava", "Colour times rock: the finished picture"),
-        ("color", "The calculated colour alone"),
-        ("rock", "The rock texture alone"),
-        ("normals", "The normals of the surface as colours"),
-        ("heights", "The heights of the surface as grey"),
-        ("particles", "No surface: every particle as a point"),
-    ];
+choice! {
+    /// Colour of the splats: the lava, or one of the parts that figures 4.2, 4.3, 6.3, 6.4 and 7.3 show.
+    pub enum Shading {
+        /// Colour times rock: the finished picture.
+        Lava = ("lava", "Colour times rock: the finished picture"),
+        /// The calculated colour alone (figures 4.3b and 7.3, left).
+        Color = ("color", "The calculated colour alone"),
+        /// The rock texture alone.
+        Rock = ("rock", "The rock texture alone"),
+        /// The normals of the surface as colours (figure 6.4).
+        Normals = ("normals", "The normals of the surface as colours"),
+        /// The heights of the surface as grey (figures 4.2c and 6.4).
+        Heights = ("heights", "The heights of the surface as grey"),
+        /// No surface: every particle as a point (figure 5.2).
+        Particles = ("particles", "No surface: every particle as a point"),
+    }
 }
 
 impl Shading {
@@ -73,41 +61,26 @@ impl Shading {
     }
 }
 
-/// The height of the surface over a column of grid points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SurfaceKind {
-    /// Eq. 6.3 over all accepted points.
-    Mean,
-    /// Eq. 6.3 over the highest accepted point of each column.
-    Top,
-    /// The highest place where the density crosses rho.
-    Crossing,
+choice! {
+    /// The height of the surface over a column of grid points.
+    pub enum SurfaceKind {
+        /// Eq. 6.3 over all accepted points.
+        Mean = ("mean", "The thesis's: eq. 6.3 over all accepted points"),
+        /// Eq. 6.3 over the highest accepted point of each column.
+        Top = ("top", "Eq. 6.3 over the highest accepted point of each column"),
+        /// The highest place where the density crosses rho.
+        Crossing = ("crossing", "The highest place in each column where the density, linear between planes, is rho"),
+    }
 }
 
-impl Choice for SurfaceKind {
-    const ALL: &'static [Self] = &[SurfaceKind::Mean, SurfaceKind::Top, SurfaceKind::Crossing];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("mean", "The thesis's: eq. 6.3 over all accepted points"),
-        ("top", "Eq. 6.3 over the highest accepted point of each column"),
-        ("crossing", "The highest place in each column where the density, linear between planes, is rho"),
-    ];
-}
-
-/// Drawing of the surface in stage three.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SurfaceDraw {
-    /// Splats, blended (chapter 7).
-    Splats,
-    /// A ray for each pixel against the height field.
-    March,
-}
-
-impl Choice for SurfaceDraw {
-    const ALL: &'static [Self] = &[SurfaceDraw::Splats, SurfaceDraw::March];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("splats", "The thesis's: splats, blended"),
-        ("march", "A ray for each pixel against the height field, without stair-steps and saw-teeth"),
-    ];
+choice! {
+    /// Drawing of the surface in stage three.
+    pub enum SurfaceDraw {
+        /// Splats, blended (chapter 7).
+        Splats = ("splats", "The thesis's: splats, blended"),
+        /// A ray for each pixel against the height field.
+        March = ("march", "A ray for each pixel against the height field, without stair-steps and saw-teeth"),
+    }
 }
 
 /// Every number of a configuration, in the ranges of [`Parameters::declared`].

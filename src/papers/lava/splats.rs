@@ -8,26 +8,19 @@ use super::culling::{Culling, Kept};
 use super::parameters::Parameters;
 use super::scene::Scene;
 use super::targets::Context;
+use crate::choice;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Buffer, Device, Draw, Error, Frame, Pass, Topology};
 use crate::host_block;
-use crate::measure::parameter::Choice;
 
-/// Outline of a splat.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SplatShape {
-    /// Section 7.1.
-    Disc,
-    /// As long down a slope as it is steep.
-    Fitted,
-}
-
-impl Choice for SplatShape {
-    const ALL: &'static [Self] = &[SplatShape::Disc, SplatShape::Fitted];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("disc", "The thesis's: a disc on the surface, so that steep slopes gape"),
-        ("fitted", "Stretched down a slope until it covers a disc of the map, so that nothing gapes"),
-    ];
+choice! {
+    /// Outline of a splat.
+    pub enum SplatShape {
+        /// Section 7.1.
+        Disc = ("disc", "The thesis's: a disc on the surface, so that steep slopes gape"),
+        /// As long down a slope as it is steep.
+        Fitted = ("fitted", "Stretched down a slope until it covers a disc of the map, so that nothing gapes"),
+    }
 }
 
 host_block! {

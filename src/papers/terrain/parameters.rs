@@ -8,11 +8,11 @@ use serde_json::{Value as Json, json};
 
 use super::placement::Placement;
 use crate::measure::parameter::{
-    self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Value, one, parse_finite, parse_numbers,
+    self, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Value, one, parse_finite, parse_numbers,
 };
 use crate::measure::{self, ParameterError, components, config};
 use crate::scene::Camera;
-use crate::{field, size_field};
+use crate::{choice, field, size_field};
 
 /// The applications of section 4, and what a user would do without them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -86,55 +86,36 @@ impl measure::Variant for Variant {
     }
 }
 
-/// The level of detail: the end of a ray's subdivision.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Lod {
-    /// To the interpolated surface of the data.
-    Exact,
-    /// To the footprint of a pixel, with heights from the level of that size.
-    Pixel,
+choice! {
+    /// The level of detail: the end of a ray's subdivision.
+    pub enum Lod {
+        /// To the interpolated surface of the data.
+        Exact = ("exact", "To the interpolated surface of the data"),
+        /// To the footprint of a pixel, with heights from the level of that size.
+        Pixel = ("pixel", "To the footprint of a pixel, with heights from the level of that size"),
+    }
 }
 
-impl Choice for Lod {
-    const ALL: &'static [Self] = &[Lod::Exact, Lod::Pixel];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("exact", "To the interpolated surface of the data"),
-        ("pixel", "To the footprint of a pixel, with heights from the level of that size"),
-    ];
+choice! {
+    /// The surface between the samples.
+    pub enum Interpolation {
+        /// Eq. 7.
+        Bilinear = ("bilinear", "Eq. 7"),
+        /// Catmull-Rom: through the samples, with a continuous slope.
+        Bicubic = ("bicubic", "Catmull-Rom"),
+    }
 }
 
-/// The surface between the samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Interpolation {
-    /// Eq. 7.
-    Bilinear,
-    /// Catmull-Rom: through the samples, with a continuous slope.
-    Bicubic,
-}
-
-impl Choice for Interpolation {
-    const ALL: &'static [Self] = &[Interpolation::Bilinear, Interpolation::Bicubic];
-    const NAMES: &'static [(&'static str, &'static str)] = &[("bilinear", "Eq. 7"), ("bicubic", "Catmull-Rom")];
-}
-
-/// The normals of the terrain's surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Normals {
-    /// [`Normals::Nodes`] where the cells of a bilinear surface are larger than a pixel, [`Normals::Surface`] elsewhere.
-    Auto,
-    /// Interpolated between those of the samples, which follow from their neighbours.
-    Nodes,
-    /// Of the interpolated surface itself.
-    Surface,
-}
-
-impl Choice for Normals {
-    const ALL: &'static [Self] = &[Normals::Auto, Normals::Nodes, Normals::Surface];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("auto", "Nodes where a bilinear cell is larger than a pixel, surface elsewhere"),
-        ("nodes", "Interpolated between those of the samples, without steps from cell to cell"),
-        ("surface", "Of the interpolated surface itself"),
-    ];
+choice! {
+    /// The normals of the terrain's surface.
+    pub enum Normals {
+        /// [`Normals::Nodes`] where the cells of a bilinear surface are larger than a pixel, [`Normals::Surface`] elsewhere.
+        Auto = ("auto", "Nodes where a bilinear cell is larger than a pixel, surface elsewhere"),
+        /// Interpolated between those of the samples, which follow from their neighbours.
+        Nodes = ("nodes", "Interpolated between those of the samples, without steps from cell to cell"),
+        /// Of the interpolated surface itself.
+        Surface = ("surface", "Of the interpolated surface itself"),
+    }
 }
 
 /// The base surface P that heights are added to along its normal (eq. 5, 6).

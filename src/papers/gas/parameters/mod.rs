@@ -17,10 +17,10 @@ pub use march::March;
 
 use super::grid::{Filter, Grid};
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
-use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range};
+use crate::measure::parameter::{self, Cost, Extents, EyeAndTarget, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
-use crate::{field, size_field};
+use crate::{choice, field, size_field};
 
 /// The ways of shadowing by the gas (section "Shadowing of the gas", figure 8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -55,24 +55,17 @@ impl crate::measure::Variant for Variant {
     }
 }
 
-/// Place of a sample in its part of an increment along the viewer's ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Jitter {
-    /// By a hash of pixel and sample.
-    Random,
-    /// At one place for each ray, by a mask of blue noise.
-    BlueNoise,
-}
-
-impl Choice for Jitter {
-    const ALL: &'static [Self] = &[Jitter::Random, Jitter::BlueNoise];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("random", "The paper's: at random, alike from pixel to pixel"),
-        (
+choice! {
+    /// Place of a sample in its part of an increment along the viewer's ray.
+    pub enum Jitter {
+        /// By a hash of pixel and sample.
+        Random = ("random", "The paper's: at random, alike from pixel to pixel"),
+        /// At one place for each ray, by a mask of blue noise.
+        BlueNoise = (
             "blue-noise",
             "At one place for each ray, by a mask of blue noise: far apart in neighbouring pixels, so that the grain is fine",
         ),
-    ];
+    }
 }
 
 impl Variant {

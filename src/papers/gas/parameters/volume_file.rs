@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::field;
-use crate::measure::parameter::{Choice, Cost, Parameter, Range, Shape, Value, one, with_place};
+use crate::measure::parameter::{Cost, Parameter, Range, Shape, Value, one, with_place};
 use crate::measure::{Error, components};
 use crate::papers::gas::grid::Grid;
 use crate::papers::gas::model::Volume;
 use crate::papers::lava::blackbody;
 use crate::scene::load_voxels;
+use crate::{choice, field};
 
 /// A file with its place. As text: the file, then nothing, or `@` and 3 to 5 numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,32 +34,20 @@ pub struct Stand {
     pub longest_m: Option<f32>,
 }
 
-/// The axis of a file that is upright.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Upright {
-    Z,
-    Y,
+choice! {
+    /// The axis of a file that is upright.
+    pub enum Upright {
+        Z = ("z", "As scanners have it, and y from the front to the back"),
+        Y = ("y", "As most that is modelled"),
+    }
 }
 
-impl Choice for Upright {
-    const ALL: &'static [Self] = &[Upright::Z, Upright::Y];
-    const NAMES: &'static [(&'static str, &'static str)] =
-        &[("z", "As scanners have it, and y from the front to the back"), ("y", "As most that is modelled")];
-}
-
-/// Treatment of a sample that is no density.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unfit {
-    Refuse,
-    Clamp,
-}
-
-impl Choice for Unfit {
-    const ALL: &'static [Self] = &[Unfit::Refuse, Unfit::Clamp];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("refuse", "The file is refused"),
-        ("clamp", "NaN and what is below the range is density 0, infinity density 1"),
-    ];
+choice! {
+    /// Treatment of a sample that is no density.
+    pub enum Unfit {
+        Refuse = ("refuse", "The file is refused"),
+        Clamp = ("clamp", "NaN and what is below the range is density 0, infinity density 1"),
+    }
 }
 
 /// Hottest temperature that is told from others, kelvin.

@@ -19,11 +19,11 @@ use self::cull_sum::cull_sum;
 use super::parameters::Parameters;
 use super::scene::Scene;
 use super::targets::Context;
+use crate::choice;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, Pass};
 use crate::host_block;
-use crate::measure::parameter::Choice;
 use crate::shader_build::HostBlock;
 
 /// Splats of a cluster, which follow each other along x.
@@ -35,24 +35,16 @@ const ARGUMENTS: usize = 6;
 /// Corners of a splat that is drawn without a geometry stage.
 const CORNERS: u32 = 4;
 
-/// Splats that are left out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SplatCulling {
-    /// None.
-    Off,
-    /// Beyond the picture's sides.
-    Frustum,
-    /// Those, and the ones that are turned away and hidden.
-    Facing,
-}
-
-impl Choice for SplatCulling {
-    const ALL: &'static [Self] = &[SplatCulling::Off, SplatCulling::Frustum, SplatCulling::Facing];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("off", "The thesis's: every splat is drawn"),
-        ("frustum", "Not those beyond the picture's sides, by clusters and one by one"),
-        ("facing", "Nor those that are turned away and hidden by more than epsilon"),
-    ];
+choice! {
+    /// Splats that are left out.
+    pub enum SplatCulling {
+        /// None.
+        Off = ("off", "The thesis's: every splat is drawn"),
+        /// Beyond the picture's sides.
+        Frustum = ("frustum", "Not those beyond the picture's sides, by clusters and one by one"),
+        /// Those, and the ones that are turned away and hidden.
+        Facing = ("facing", "Nor those that are turned away and hidden by more than epsilon"),
+    }
 }
 
 host_block! {

@@ -1,8 +1,8 @@
 //! Numbers of the lava's heat, and of what it makes of the viscosity (chapter 9, "Temperature variables and heat transfer
 //! simulations").
 
-use crate::field;
-use crate::measure::parameter::{Choice, Cost, Parameter, Range};
+use crate::measure::parameter::{Cost, Parameter, Range};
+use crate::{choice, field};
 
 /// Stefan and Boltzmann's constant, watts per square metre and K^4: of the SI's exact values (2019).
 const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
@@ -12,21 +12,14 @@ pub const LEAST_INTERVAL_K: f32 = 1.0;
 /// Most that latent heat is over the heat capacity, kelvin, 14 times as much as of basalt: sums of both are single numbers.
 pub const MOST_LATENT_K: f32 = 4000.0;
 
-/// Law that the viscosity follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rheology {
-    /// One for all.
-    Constant,
-    /// Giordano and Dingwell (2003) by temperature, and a crust below the solidus.
-    Basalt,
-}
-
-impl Choice for Rheology {
-    const ALL: &'static [Self] = &[Rheology::Constant, Rheology::Basalt];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("constant", "The viscosity is one for all"),
-        ("basalt", "It grows as a basalt cools, and below the solidus lava is a crust that yields to stress"),
-    ];
+choice! {
+    /// Law that the viscosity follows.
+    pub enum Rheology {
+        /// One for all.
+        Constant = ("constant", "The viscosity is one for all"),
+        /// Giordano and Dingwell (2003) by temperature, and a crust below the solidus.
+        Basalt = ("basalt", "It grows as a basalt cools, and below the solidus lava is a crust that yields to stress"),
+    }
 }
 
 /// Heat and rheology, in the ranges of [`Heat::declared`].

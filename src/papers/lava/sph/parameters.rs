@@ -5,39 +5,27 @@ use glam::Vec3;
 use super::crust::Crust;
 use super::heat::Heat;
 use super::vent::Vent;
-use crate::field;
-use crate::measure::parameter::{Choice, Cost, Extents, Field, Parameter, Range, Value as _};
+use crate::measure::parameter::{Cost, Extents, Field, Parameter, Range, Value as _};
+use crate::{choice, field};
 
-/// Motion of the particles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Simulation {
-    /// Section 5.1.
-    Free,
-    /// Smoothed particle hydrodynamics.
-    Sph,
+choice! {
+    /// Motion of the particles.
+    pub enum Simulation {
+        /// Section 5.1.
+        Free = ("free", "The thesis's: each particle by itself"),
+        /// Smoothed particle hydrodynamics.
+        Sph = ("sph", "A viscous fluid on a slope: smoothed particle hydrodynamics"),
+    }
 }
 
-impl Choice for Simulation {
-    const ALL: &'static [Self] = &[Simulation::Free, Simulation::Sph];
-    const NAMES: &'static [(&'static str, &'static str)] = &[
-        ("free", "The thesis's: each particle by itself"),
-        ("sph", "A viscous fluid on a slope: smoothed particle hydrodynamics"),
-    ];
-}
-
-/// Bounds of the fluid along x and z.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sides {
-    /// Walls that the lava sticks to.
-    Walls,
-    /// The space repeats.
-    Periodic,
-}
-
-impl Choice for Sides {
-    const ALL: &'static [Self] = &[Sides::Walls, Sides::Periodic];
-    const NAMES: &'static [(&'static str, &'static str)] =
-        &[("walls", "Walls that the lava sticks to, as it does to the floor"), ("periodic", "The space repeats")];
+choice! {
+    /// Bounds of the fluid along x and z.
+    pub enum Sides {
+        /// Walls that the lava sticks to.
+        Walls = ("walls", "Walls that the lava sticks to, as it does to the floor"),
+        /// The space repeats.
+        Periodic = ("periodic", "The space repeats"),
+    }
 }
 
 /// The fluid, in the ranges of [`Flow::declared`].
