@@ -100,7 +100,7 @@ impl From<Error> for Failure {
             Error::Parameter(error) => Failure::Input(format!("--{error}")),
             Error::Scene(crate::scene::Error::Interrupted { .. }) => Failure::Running(error.to_string()),
             Error::Scene(_) | Error::Output(_) | Error::Input(_) => Failure::Input(error.to_string()),
-            Error::Plot(_) | Error::Interrupted | Error::Shared => Failure::Running(error.to_string()),
+            Error::Plot(_) | Error::Law(_) | Error::Interrupted | Error::Shared => Failure::Running(error.to_string()),
         }
     }
 }

@@ -21,6 +21,9 @@ pub enum Error {
     Plot(#[from] PlotError),
     #[error("{0}")]
     Input(String),
+    /// What was followed broke a law that it is held against.
+    #[error("{0}")]
+    Law(String),
     #[error("interrupted before anything was measured")]
     Interrupted,
     /// Not a failure: the process has done what was its of a sweep.

@@ -27,19 +27,44 @@ pub const LENGTHS: [&str; 3] = ["front m", "thickness m", "greatest thickness m"
 /// Likewise.
 pub const TEMPERATURES: [&str; 3] = ["mean K", "greatest K", "skin K"];
 
-/// A state of the lava.
+/// The particles that are out, by their numbers.
+pub(super) struct State {
+    /// Metres.
+    pub(super) places: Vec<DVec3>,
+    /// Metres per second.
+    pub(super) velocities: Vec<DVec3>,
+    pub(super) kelvin: Vec<f64>,
+}
+
+/// Those of the last step.
+pub(super) fn state(machine: &Machine, animate: &Animate) -> Result<State, Error> {
+    let read = |view| -> Result<Vec<[f32; 4]>, Error> {
+        let mut texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&read_image(&machine.device, view)?);
+        texels.truncate(animate.out() as usize);
+        Ok(texels)
+    };
+    let vectors = |texels: &[[f32; 4]]| texels.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect();
+    let (positions, velocities) = (read(&animate.state().positions)?, read(&animate.state().velocities)?);
+    Ok(State {
+        places: vectors(&positions),
+        kelvin: velocities.iter().map(|texel| f64::from(texel[3])).collect(),
+        velocities: vectors(&velocities),
+    })
+}
+
+/// What is seen of the lava.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Observed {
-    front_m: f64,
+pub(super) struct Observed {
+    pub(super) front_m: f64,
     area_m2: f64,
-    highest_m: f64,
+    pub(super) highest_m: f64,
     mean_k: f64,
     greatest_k: f64,
 }
 
 /// Of these particles, metres and kelvin, over a bed; at least one. The front is as far along x as a particle is, or from the
 /// middle of a vent.
-fn observed(
+pub(super) fn observed(
     space_m: Vec3,
     spacing_m: f64,
     (bed, vent_m): (&Bed, Option<DVec2>),
@@ -102,15 +127,7 @@ pub fn table(machine: &mut Machine, setup: &Setup, frames: u32) -> Result<Result
         let Some(sph) = animate.sph() else { break };
         sph.check(&machine.device)?;
         let out = animate.out() as usize;
-        let read = |view| -> Result<Vec<[f32; 4]>, Error> {
-            let mut texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&read_image(&machine.device, view)?);
-            texels.truncate(out);
-            Ok(texels)
-        };
-        let state = animate.state();
-        let places: Vec<DVec3> =
-            read(&state.positions)?.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect();
-        let kelvin: Vec<f64> = read(&state.velocities)?.iter().map(|texel| f64::from(texel[3])).collect();
+        let State { places, kelvin, .. } = state(machine, &animate)?;
         let seen = observed(p.space_m, scale.spacing_m, (&scene.particles.bed, vent_m), &places, &kelvin);
         let skin_k = sph.skin_k(&machine.device, out)?;
         let (time_s, volume_m3) = (f64::from(wanted) * f64::from(p.time_step_s), out as f64 * particle_m3);

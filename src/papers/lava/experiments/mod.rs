@@ -14,6 +14,7 @@ mod readback;
 mod results;
 mod scaling;
 mod shading;
+mod stability;
 mod surface;
 
 use self::figures::{Drawn, FIGURES};
@@ -89,7 +90,15 @@ pub fn all() -> Vec<Experiment<Setup>> {
         refuses: REFUSED_BY_STRIPS,
         run: strip_of,
     };
-    figures.into_iter().chain(others).chain([surface, motion, strip, flow]).chain(of_chapter_9()).collect()
+    let stability = Experiment {
+        name: "stability",
+        help: "The fluid over many steps: speeds, compression, energy, heat, mass and front; a law that breaks is a failure",
+        options: &[],
+        refuses: &[("frame", "this experiment follows frames from 0 on; give `frames`")],
+        run: stabilities,
+    };
+    let of_fluids = [surface, motion, strip, flow, stability];
+    figures.into_iter().chain(others).chain(of_fluids).chain(of_chapter_9()).collect()
 }
 
 /// An experiment for each heading of chapter 9 behind the first, which is `flow`.
@@ -250,6 +259,30 @@ fn flows(context: &mut Context<'_>) -> Result<(), Error> {
     context.save(&context.file("-temperatures.svg"), temperatures.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
     machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn stabilities(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    stability::check(&context.setup)?;
+    let mut machine = context.open()?;
+    let frames = context.measure.frames.unwrap_or(stability::FRAMES).max(1);
+    let (mut rows, mut ended) = (Vec::new(), Ok(()));
+    let mut keep = |rows: &[_]| context.keep_table(&stability::table(rows.to_vec()));
+    context.console.watch("following the lava", &mut |watch| {
+        ended = stability::follow(&mut machine, &context.setup, frames, watch, (&mut rows, &mut keep));
+    });
+    if rows.is_empty() {
+        return ended.and(Err(Error::Interrupted));
+    }
+    let table = stability::table(rows);
+    let compressions = table.lines("time s", "% of the density at rest", &stability::COMPRESSIONS)?;
+    context.save(&context.file("-compression.svg"), compressions.as_bytes())?;
+    context.publish_plotted(&machine, &table, table.lines("time s", "metres per second", &stability::SPEEDS))?;
+    machine.check_validation()?;
+    match ended {
+        Err(Error::Interrupted) | Ok(()) => Ok(()),
+        Err(error) => Err(error),
+    }
 }
 
 fn coolings(context: &mut Context<'_>) -> Result<(), Error> {
