@@ -113,6 +113,6 @@ pub fn stop_kind(error: &Error) -> Option<StopKind> {
         Error::Interrupted => Some(StopKind::Interruption),
         Error::Scene(_) | Error::Image(_) | Error::Output(_) | Error::Plot(_) | Error::Input(_) => None,
         // Of an experiment alone.
-        Error::Shared => None,
+        Error::Law(_) | Error::Shared => None,
     }
 }

@@ -257,6 +257,10 @@ fn flows(context: &mut Context<'_>) -> Result<(), Error> {
     let table = flow::table(&mut machine, &context.setup, frames)?;
     let temperatures = table.lines("time s", "kelvin", &flow::TEMPERATURES)?;
     context.save(&context.file("-temperatures.svg"), temperatures.as_bytes())?;
+    let area = table.lines("time s", "square metres", &["area m2"])?;
+    context.save(&context.file("-area.svg"), area.as_bytes())?;
+    let effusion = table.lines("time s", "cubic metres per second", &["effusion m3/s"])?;
+    context.save(&context.file("-effusion.svg"), effusion.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
     machine.check_validation().map_err(Error::from).map(drop)
 }

@@ -16,6 +16,7 @@ use crate::measure::Error;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Watch;
 use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study as _;
 use crate::papers::lava::{Bed, Parameters, Sides};
 
 /// Frames without `frames`: ten seconds of the default step.
