@@ -65,6 +65,33 @@ fn what_radiates_cools() {
 }
 
 #[test]
+fn a_fluid_is_followed_over_many_steps() {
+    let out = folder();
+    let fluid = "--simulation sph --heat-capacity 12 --frames 90 --quiet --out .";
+    let experiment = lava("experiment stability").args(SMALL).args(fluid).on_test_device();
+    experiment.inside(out.path()).run().succeeded();
+    let files = ["-compression.svg", ".csv", ".json", ".svg"];
+    assert_eq!(entries(out.path()), files.map(|suffix| format!("lava-stability{suffix}")));
+    let table = read_json(&out.path().join("lava-stability.json"));
+    let rows = table["table"]["rows"].as_array().unwrap();
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    assert!(rows.len() == 46 && number(first, "frame") == 0.0 && number(last, "frame") == 89.0, "{table}");
+    for row in rows {
+        assert_eq!(number(row, "mass kg"), number(first, "mass kg"), "{row}");
+        assert_eq!(number(row, "particles"), 400.0, "{row}");
+    }
+    assert!((number(first, "mass kg") - 0.72 * 2700.0).abs() < 0.1, "{first}");
+    assert!(number(last, "energy J/kg") < number(first, "energy J/kg") - 0.5, "{table}");
+    assert!(number(last, "mean K") < number(first, "mean K") - 0.1, "{table}");
+    assert!(number(last, "front m") > number(first, "front m") + 0.5, "{table}");
+    lava("experiment stability").on_test_device().run().refused(2, &["--simulation"]);
+    lava("experiment stability --simulation sph --sides periodic")
+        .on_test_device()
+        .run()
+        .refused(2, &["--sides periodic"]);
+}
+
+#[test]
 fn pixels_have_planck_s_chromaticities() {
     let rows = rows("radiance", "");
     let within: Vec<&Value> = rows.iter().filter(|row| number(row, "kelvin") >= 2000.0).collect();
