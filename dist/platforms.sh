@@ -3,7 +3,8 @@
 # name. It adds the Rust targets that it needs. What a step needs beside: windows a cross compiler (Debian's
 # g++-mingw-w64-x86-64-posix) and, to run the library's tests, wine; aarch64 a cross compiler (g++-aarch64-linux-gnu).
 #
-# windows compiles and links the programs, and runs the tests that need no device (all but those of gpu::tests). macos and
+# windows compiles and links the programs, and runs the tests that need no device (all but those of gpu::tests); wine 8 lacks
+# one library of Windows 10, for which a stub stands in. macos and
 # aarch64 compile all Rust code and link nothing. Build scripts compile C++ under `cargo check` too: for macOS, whose compiler
 # and headers may not be shipped, a stub stands in for it and makes empty objects, so that nothing is known of the C++ there.
 set -euo pipefail
@@ -32,15 +33,26 @@ windows() {
     target x86_64-pc-windows-gnu
     export CC_x86_64_pc_windows_gnu=x86_64-w64-mingw32-gcc-posix CXX_x86_64_pc_windows_gnu=x86_64-w64-mingw32-g++-posix
     export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=x86_64-w64-mingw32-g++-posix
-    # One file runs by itself: the C++ runtime is part of it.
-    export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUSTFLAGS='-Clink-arg=-static'
+    # One file runs by itself: the C++ runtime is part of it, since where the linker looks first there is no other.
+    runtime=$CARGO_TARGET_DIR/cxx-of-windows
+    mkdir -p "$runtime"
+    cp "$(x86_64-w64-mingw32-g++-posix -print-file-name=libstdc++.a)" "$runtime"
+    runtime=$(cd "$runtime" && pwd)
+    export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUSTFLAGS="-Clink-arg=-static -Lnative=$runtime"
     cargo build --release --locked --target x86_64-pc-windows-gnu --bins
     if ! command -v wine >/dev/null; then
         echo 'platforms: no wine: the tests were compiled for Windows, not run'
         cargo test --release --locked --target x86_64-pc-windows-gnu --lib --no-run
         return
     fi
-    export WINEPREFIX=$scratch/wine WINEDEBUG=-all CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER=wine
+    # Rust asks Windows 10's bcryptprimitives.dll for random bytes.
+    cat >"$scratch/random.c" <<'STUB'
+#include <windows.h>
+BOOLEAN NTAPI SystemFunction036(void *, ULONG);
+__declspec(dllexport) BOOL WINAPI ProcessPrng(void *bytes, SIZE_T count) { return SystemFunction036(bytes, (ULONG)count); }
+STUB
+    x86_64-w64-mingw32-gcc-posix -shared -o "$scratch/bcryptprimitives.dll" "$scratch/random.c" -ladvapi32
+    export WINEPREFIX=$scratch/wine WINEPATH=$scratch WINEDEBUG=-all CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER=wine
     cargo test --release --locked --target x86_64-pc-windows-gnu --lib -- --skip gpu::tests
     programs=$CARGO_TARGET_DIR/x86_64-pc-windows-gnu/release
     wine "$programs/fumarole.exe" --version

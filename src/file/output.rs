@@ -316,7 +316,9 @@ mod tests {
             assert_ne!(destination(&folder.join("a")).as_ref(), Some(&found), "{is_there}");
             fs::write(&file, "x").unwrap();
         }
-        assert_eq!([destination(&folder), destination(Path::new("/dev/null"))], [None, None]);
+        assert_eq!(destination(&folder), None);
+        #[cfg(unix)]
+        assert_eq!(destination(Path::new("/dev/null")), None);
     }
 
     #[test]

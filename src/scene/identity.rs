@@ -7,8 +7,8 @@ use super::formats::gltf_buffer::percent_decoded;
 use super::{height_map, voxels, world_file};
 use crate::{content, file};
 
-/// Endings of the files that a raster may be read with.
-const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
+/// Endings of the files that a raster may be read with, in small or in large letters.
+const BESIDE_A_RASTER: [&str; 5] = ["hdr", "prj", "bil", "dem", "bsq"];
 
 /// SHA-256 of a file, or of all of a folder, in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
 /// projection of a raster, parts of a mosaic, world file of a picture, samples of a volume), that of all their digests in order.
@@ -50,9 +50,14 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     if !samples.is_empty() {
         return samples;
     }
-    let is_raster = BESIDE_A_RASTER.iter().any(|known| ending == *known);
-    let beside = BESIDE_A_RASTER.iter().filter(|_| is_raster).map(|ending| path.with_extension(ending));
-    beside.filter(|file| file != path && file.is_file()).collect()
+    if !BESIDE_A_RASTER.iter().any(|known| ending == *known) {
+        return Vec::new();
+    }
+    // One file of each ending but its own: some systems find it under either name.
+    let others = BESIDE_A_RASTER.iter().filter(|other| ending != **other);
+    let spelled =
+        |ending: &str| [ending.to_owned(), ending.to_ascii_uppercase()].map(|ending| path.with_extension(ending));
+    others.filter_map(|other| spelled(other).into_iter().find(|file| file.is_file())).collect()
 }
 
 #[cfg(test)]

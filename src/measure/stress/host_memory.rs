@@ -5,13 +5,13 @@ use std::path::Path;
 
 /// Most memory that this process has had.
 pub fn peak_bytes() -> Option<u64> {
-    kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+    kilobytes(&account("/proc/self/status")?, "VmHWM:")
 }
 
 /// Memory that a process may still take: what the system has free, and what the control group may have.
 pub fn available_bytes() -> Option<u64> {
-    let free = kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")?;
-    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let free = kilobytes(&account("/proc/meminfo")?, "MemAvailable:")?;
+    let groups = account("/proc/self/cgroup").unwrap_or_default();
     let group = groups.lines().find_map(|line| line.strip_prefix("0::/"));
     let of_group = group.and_then(|group| left_in(&Path::new("/sys/fs/cgroup").join(group)));
     Some(of_group.map_or(free, |left| left.min(free)))
@@ -19,13 +19,18 @@ pub fn available_bytes() -> Option<u64> {
 
 /// Processes that the system has killed since its start because memory ran out, its own or a control group's.
 pub fn killed_for_memory() -> Option<u64> {
-    counted(&fs::read_to_string("/proc/vmstat").ok()?, "oom_kill")
+    counted(&account("/proc/vmstat")?, "oom_kill")
 }
 
 /// Makes this process the first that the system kills when memory runs out, so that it takes no other.
 pub fn be_killed_first() {
     // Where it cannot be said, nothing is lost.
     let _ = fs::write("/proc/self/oom_score_adj", "1000");
+}
+
+/// Text of a file of Linux's account; another system may show the account of a Linux below it, which is not its own.
+fn account(path: &str) -> Option<String> {
+    cfg!(target_os = "linux").then(|| fs::read_to_string(path).ok()).flatten()
 }
 
 fn left_in(group: &Path) -> Option<u64> {

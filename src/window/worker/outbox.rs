@@ -89,7 +89,8 @@ mod tests {
     fn blocks_of_frames_that_are_not_taken_stay_apart() {
         let file = crate::file::exchange().unwrap();
         let mut exchange = Exchange::open(file.path()).unwrap();
-        assert!(!file.path().exists());
+        // Windows may keep the name until both have closed the file.
+        assert!(cfg!(windows) || !file.path().exists());
         let first = exchange.put(1, &[1; 5000]).unwrap();
         let second = exchange.put(1, &[2; 10]).unwrap();
         let third = exchange.put(2, &[3; 100]).unwrap();

@@ -182,7 +182,7 @@ mod tests {
                 fs::File::create(folder.path().join(name)).unwrap().set_len(*size_bytes as u64).unwrap();
             }
             let message = load(folder.path()).unwrap_err().to_string();
-            message.replace(&folder.path().display().to_string(), "F")
+            message.replace(&folder.path().display().to_string(), "F").replace('\\', "/")
         };
         let none: &[(&str, usize)] = &[];
         let (coarse, fine) = (2 * SIDE * SIDE, 2 * 3_601 * 3_601);

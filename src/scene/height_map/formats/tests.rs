@@ -149,7 +149,8 @@ fn raster(
     let text = std::fs::read_to_string(asset("topobathy-int16.hdr")).unwrap();
     std::fs::write(path("hdr"), header(&text)).unwrap();
     std::fs::write(path(ending), data(std::fs::read(asset("topobathy-int16.bil")).unwrap())).unwrap();
-    load(&path(ending), 0).map_err(|error| error.to_string().replace(&format!("{}/", directory.path().display()), ""))
+    let folder = directory.path().join("").display().to_string();
+    load(&path(ending), 0).map_err(|error| error.to_string().replace(&folder, ""))
 }
 
 #[test]
