@@ -88,6 +88,7 @@ pub use self::rock::Rock;
 pub use self::scene::{FluidSheet, Sheet, depth_range_m};
 pub use self::sph::Sph;
 pub use self::sph::bed::Bed;
+pub use self::sph::crust::Crust;
 pub use self::sph::heat::{Heat, Rheology};
 pub use self::sph::parameters::{Flow, Sides, Simulation};
 pub use self::sph::vent::{Inflow, Vent};

@@ -3,6 +3,7 @@
 mod animation;
 mod bed;
 mod blackbody;
+mod crust;
 mod culling;
 mod deferred;
 mod density;
