@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/meeting.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
@@ -45,7 +46,7 @@ void main() {
         return;
     }
     uint block = cells[vertex];
-    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 place = bent(vertex, rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz));
     vec3 position = turned(parts[part].orientation, place) + parts[part].offset;
     uint layer = parts[part].rests != 0.0 ? 0u : 1u + part % 2u;
     atomicMin(balls[entry_of(layer, cell_at(position))], vertex);

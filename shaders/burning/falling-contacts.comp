@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
@@ -50,7 +51,7 @@ void main() {
         return;
     }
     uint block = cells[vertex];
-    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 place = bent(vertex, rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz));
     vec3 position = turned(parts[part].orientation, place) + parts[part].offset;
     uint at = part * WORDS;
 #ifdef STEP_HEIGHTS

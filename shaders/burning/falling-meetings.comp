@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 

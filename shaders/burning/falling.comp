@@ -16,6 +16,7 @@ layout(local_size_x = 64) in;
 #include "burning/moments.glsl"
 #include "burning/contacts.glsl"
 #include "burning/meeting.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
@@ -172,6 +173,7 @@ void main() {
         if (vertex != FARTHEST) {
             uint block = cells[vertex];
             vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+            place = bent(uint(vertex), place);
             vec3 position = turned(part.orientation, place) + part.offset;
             arms[count] = position - at;
             Obstacle obstacle = met[index * MEETINGS + octant];

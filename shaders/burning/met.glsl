@@ -14,7 +14,7 @@ struct Meeting {
 
 vec3 position_of(uint vertex) {
     uint block = cells[vertex];
-    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 place = bent(vertex, rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz));
     uint part = min(part_of[vertex], MOST_PARTS - 1u);
     return turned(parts[part].orientation, place) + parts[part].offset;
 }

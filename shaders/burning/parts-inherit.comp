@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 #include "burning/parts.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
@@ -60,7 +61,7 @@ void main() {
         return;
     }
     uint block = cells[vertex];
-    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 place = bent(vertex, rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz));
     Part part = Part(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0), 1.0, vec3(0.0), 0.0, vec3(0.0), 0.0, place, 0.0, place, 0.0);
     uint before = part_of[vertex];
     if (before < MOST_PARTS) {

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 #include "burning/moments.glsl"
+#include "burning/bent.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
@@ -81,6 +82,7 @@ void main() {
             }
             uint block = cells[vertex];
             vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+            place = bent(vertex, place);
             vec3 arm = place - parts[part].anchor;
             uint weight = weights[vertex];
             run_sums[0] += weight;

@@ -1,8 +1,10 @@
-// A vertex's place in the object, moved to the world with its part, where parts fall.
+// A vertex's place in the object, bent and moved to the world with its part, where parts fall.
 
 #include "burning/parts.glsl"
 
 #ifdef OBJECT_PARTS
+#include "burning/bent.glsl"
+
 layout(set = 0, binding = 65, std430) readonly buffer PartOf {
     uint part_of[];
 };
@@ -12,10 +14,11 @@ layout(set = 0, binding = 66, std430) readonly buffer Parts {
 };
 
 vec3 posed(uint vertex, vec3 place) {
+    vec3 own = bent(vertex, place);
     uint part = part_of[vertex];
     if (part >= MOST_PARTS) {
-        return place;
+        return own;
     }
-    return turned(parts[part].orientation, place) + parts[part].offset;
+    return turned(parts[part].orientation, own) + parts[part].offset;
 }
 #endif

@@ -5,6 +5,7 @@ use super::{CompiledShader, Error, Stage};
 /// Vertex, fragment and compute shaders outside naga's GLSL subset, each with the reason.
 /// Geometry shaders are excluded by their kind and do not belong here.
 pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
+    ("burning/bending-loads.comp", "atomics: loads and strengths are summed"),
     ("burning/block-weights-placed.comp", "atomics: vertices are counted by block"),
     ("burning/block-weights-random.comp", "atomics: vertices are counted by block"),
     ("burning/connection-pieces.comp", "an atomic: pieces are counted"),

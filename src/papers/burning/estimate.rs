@@ -6,7 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-use super::{chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
+use super::{bending, chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -71,7 +71,7 @@ impl Parameters {
         let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
         let has_light = self.has_linear_light();
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
-        let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);
+        let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX + bending::NUMBERS_OF_VERTEX);
         let connects = self.keeps_connected(variant);
         let of_vertex = of_vertex + NUMBER * if_so(connects, connection::NUMBERS_OF_VERTEX);
         let of_triangle = of_triangle + NUMBER * if_so(connects, connection::NUMBERS_OF_TRIANGLE);
@@ -80,7 +80,7 @@ impl Parameters {
         let of_vertex = of_vertex + if_so(several, 4);
         let of_corner = of_corner + if_so(several, 4);
         let of_triangle = of_triangle + if_so(several, 12);
-        let of_look = if_so(collapses, parts::BYTES + falling::BYTES)
+        let of_look = if_so(collapses, parts::BYTES + bending::BYTES + falling::BYTES)
             + if_so(has_puddle, puddle::BYTES)
             + if_so(self.has_ash(variant), draw_ground::BYTES)
             + if_so(has_light, flame_lights::BYTES)

@@ -52,7 +52,8 @@ pub fn falling(
     buffers.keep(shaders, &moving)?;
     let step = |shader: &str| Pass::compute("falling", "", &format!("burning/{shader}.comp"));
     let placed = |shader: &str| {
-        step(shader).with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Parts", &parts.parts)
+        let step = step(shader).with("constants", &buffers.constants).with("Cells", &buffers.cells);
+        step.with("Parts", &parts.parts).with("Bends", &parts.bends)
     };
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
     let found = |shader: &str| placed(shader).with("PartOf", &parts.part_of).with("Balls", &balls);

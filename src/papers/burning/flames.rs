@@ -125,7 +125,7 @@ impl Flames {
         let list = chunks.visiting(list, &near);
         let burn = match parts {
             None => step("burning/flames-whole.comp"),
-            Some(parts) => step("burning/flames-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts),
+            Some(parts) => parts.posing(step("burning/flames-parts.comp")),
         };
         let burn = burn
             .with("billboards", &billboards)

@@ -1,11 +1,13 @@
 //! Host structs against the blocks of buffers that hold them.
 
+use super::bending::{Hinge, Load};
 use super::buffers::{BlockCounts, Constants, Counts, RestVertex, VertexState};
 use super::draw::ViewBlock;
 use super::flame_lights::FireLight;
 use super::flames::{BillboardsBlock, Group, Particle};
 use super::materials::{Appearance, BlockLevels};
-use super::parts::{Part, Progress};
+use super::model::{Cut, Hold, Joint, Section};
+use super::parts::{Bend, Part, Progress};
 use super::puddle::Film;
 use super::smoke_volume::SmokeGrid;
 use super::texture::TextureLevel;
@@ -31,6 +33,13 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<Group>("burning/flames-whole.comp", "Groups");
     check_list::<Particle>("burning/flames-whole.comp", "Particles");
     check_list::<Part>("burning/falling.comp", "Parts");
+    check_list::<Bend>("burning/bending-vertices.comp", "Bends");
+    check_list::<Hold>("burning/bending-vertices.comp", "Holds");
+    check_list::<Load>("burning/bending-loads.comp", "Loads");
+    check_list::<Cut>("burning/bending-loads.comp", "Cuts");
+    check_list::<Section>("burning/bending.comp", "Sections");
+    check_list::<Joint>("burning/bending.comp", "Joints");
+    check_list::<Hinge>("burning/bending.comp", "Hinges");
     let films = block("burning/puddle.comp", "Films");
     assert_eq!(films.members[0].block.as_ref().expect("it is a structure").check_host::<Film>(), Ok(()));
     let grids = block("burning/smoke-box.comp", "SmokeGrid");

@@ -4,8 +4,8 @@
 //! each tick of 1/60 s:
 //!   heat-boundary ─► (refinement) ─► internal-deformation ─► block-weights ─► block-rotation ─┐
 //!     ┌──────────────────────────────────────────────────────────────────────────────────────┘
-//!     └─► (parts ─► falling, or puddle) ─► flames ─┐
-//!     ┌─────────────────────────────────┘
+//!     └─► (parts ─► bending ─► falling, or puddle) ─► flames ─┐
+//!     ┌─────────────────────────────────────────────┘
 //! each frame:
 //!     └─► vertex-mapping ─► surface-removal ─► normals ─► (flame-lights) ─► draw ─► (draw-ground ─► draw-puddle)
 //!     ┌───────────────────────────────────────────────────────────────────────────────────────────┘
@@ -17,6 +17,7 @@
 
 mod appearance;
 mod axes;
+mod bending;
 mod beside;
 mod block_rotation;
 mod block_weights;
@@ -61,6 +62,7 @@ mod warnings;
 
 use std::sync::Arc;
 
+use self::bending::Bending;
 use self::block_rotation::block_rotation;
 use self::block_weights::block_weights;
 use self::draw::Draw;
@@ -95,7 +97,8 @@ pub use self::flame_lights::{FireLight, LIGHT_CELLS};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Heat, Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
-pub use self::parts::{MOST_PARTS, Part, Parts, SEARCH_TICKS};
+pub use self::bending::{Hinge, Load, Sizes};
+pub use self::parts::{Bend, MOST_PARTS, Part, Parts, SEARCH_TICKS};
 pub use self::puddle::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH};
 pub use self::smoke_volume::{SMOKE_CELLS, SmokeGrid, SmokeVolume};
 pub use self::texture::{Level, Texture, with_levels};
@@ -122,6 +125,7 @@ pub struct Burning {
     block_weights: PingPong<2>,
     block_rotation: PingPong<1>,
     parts: Option<Parts>,
+    bending: Option<Bending>,
     falling: Option<PingPong<6>>,
     puddle: Option<Puddle>,
     flames: Option<Flames>,
@@ -174,6 +178,8 @@ impl Burning {
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let has_parts = parameters.collapses(variant);
         let parts = has_parts.then(|| Parts::new(shaders, label, &mut buffers, &model)).transpose()?;
+        let bending = parts.as_ref().map(|parts| Bending::new(shaders, label, parameters, &mut buffers, parts, &model));
+        let bending = bending.transpose()?.flatten();
         let falling = parts.as_ref().map(|parts| falling(shaders, label, &mut buffers, parts, &model)).transpose()?;
         let has_puddle = parameters.has_puddle(variant);
         let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers)).transpose()?;
@@ -220,6 +226,7 @@ impl Burning {
                 &model,
             )?,
             parts,
+            bending,
             falling,
             puddle,
             refinement,
@@ -298,6 +305,7 @@ impl Burning {
             self.block_rotation.record(frame, tick)?;
             if let (Some(parts), Some(falling)) = (&self.parts, &self.falling) {
                 parts.record(frame, self.ticks())?;
+                self.bending.as_ref().map_or(Ok(()), |bending| bending.record(frame, self.ticks()))?;
                 falling.record(frame, tick)?;
             }
             if let Some(puddle) = &self.puddle {
@@ -333,16 +341,6 @@ impl Burning {
     /// The refinement pattern, of an object that is refined.
     pub fn refinement(&self) -> Option<&Refinement> {
         self.refinement.as_ref()
-    }
-
-    /// The parts that fall, of an object whose parts do.
-    pub fn parts(&self) -> Option<&Parts> {
-        self.parts.as_ref()
-    }
-
-    /// The puddle, of what melts.
-    pub fn puddle(&self) -> Option<&Puddle> {
-        self.puddle.as_ref()
     }
 
     /// Every buffer.

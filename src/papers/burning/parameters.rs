@@ -123,6 +123,8 @@ pub struct Parameters {
     pub look: Look,
     /// Lets parts that nothing holds fall, of the natural look.
     pub collapse: bool,
+    /// Factor of how far what hangs by little bends, where parts fall; 0 for not at all.
+    pub bending: f32,
     /// Lets what has burnt out of a solid leave as ash, of the natural look, as the rest does; in the text it stays.
     pub burn_away: bool,
     /// Draws the ground, of the natural look.
@@ -207,6 +209,7 @@ impl Default for Parameters {
             keep_connected: true,
             look: Look::Natural,
             collapse: true,
+            bending: 1.0,
             burn_away: true,
             ground: true,
             setting_s: 4.0,
@@ -265,6 +268,7 @@ const KEEP_CONNECTED: &str = "Keep what is burnt out while something would come 
 const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
 const SETTING: &str = "melting: wax comes to rest in this time after the fire, of the natural look";
 const BURN_AWAY: &str = "solid: let what has burnt out leave as ash, of the natural look, or stay as char";
+const BENDING: &str = "Factor of how far what hangs by little bends before it falls, where parts do; 0 not at all";
 const COLLAPSE: &str = "Let parts that nothing holds fall, of the natural look, or leave them in place";
 
 /// A field of [`Parameters`].
@@ -341,6 +345,7 @@ impl Parameters {
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
             row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines),
             row("collapse", p!(collapse), any, COLLAPSE, "").cost(Cost::Pipelines),
+            row("bending", p!(bending), FACTOR, BENDING, ""),
             row("burn-away", p!(burn_away), any, BURN_AWAY, "").cost(Cost::Pipelines),
             row("setting", p!(setting_s), R::above(0.0).to(1e4), SETTING, "").unit("seconds"),
             row(

@@ -6,9 +6,12 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{Vec3, Vec4};
 
+use super::Burning;
+use super::bending::Bending;
 use super::buffers::Buffers;
 use super::model::Model;
 use super::ping_pong::{self, new};
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
@@ -43,6 +46,22 @@ host_block! {
 }
 
 host_block! {
+    /// A rotation about the origin, then a displacement (`burning/sections.glsl`).
+    pub struct Bend {
+        /// Unit quaternion.
+        pub turn: Vec4,
+        /// Diagonals.
+        pub offset: Vec3,
+        _pad: f32,
+    }
+}
+
+impl Bend {
+    /// Of what is as at rest.
+    pub const NONE: Bend = Bend { turn: Vec4::W, offset: Vec3::ZERO, _pad: 0.0 };
+}
+
+host_block! {
     /// Progress of the search (`burning/parting.glsl`).
     #[derive(Default)]
     pub(super) struct Progress {
@@ -74,13 +93,13 @@ const MOMENTS: u32 = 19;
 /// Vertices that a thread sums up (`burning/parts-moments.comp`).
 const RUN: u32 = 16;
 /// Weight of a vertex of mean area, and the greatest.
-const MEAN_WEIGHT: f64 = 16.0;
+pub(super) const MEAN_WEIGHT: f64 = 16.0;
 const MOST_WEIGHT: f64 = 255.0;
 
 /// Of the buffers, beside those of a number a vertex; what a restart brings back is there twice.
 pub(super) const BYTES: u32 = 4 * MOST_PARTS * size_of::<Part>() as u32 + 2 * 4 * MOST_PARTS * MOMENTS;
 /// Numbers of a vertex.
-pub(super) const NUMBERS_OF_VERTEX: u32 = 2 * 4 + 1;
+pub(super) const NUMBERS_OF_VERTEX: u32 = 2 * (4 + 8) + 1;
 
 /// The pass with its buffers.
 pub struct Parts {
@@ -90,6 +109,8 @@ pub struct Parts {
     pub parts: Arc<Buffer>,
     /// uint\[N\]: the weight of each vertex.
     pub weights: Arc<Buffer>,
+    /// [`Bend`] of each vertex, by which its place in the object differs from what burning alone makes of it.
+    pub bends: Arc<Buffer>,
     /// [`Progress`] of the search.
     pub(super) progress: Arc<Buffer>,
     /// Moments of the parts while they are summed up, [`MOMENTS`] words each.
@@ -104,6 +125,18 @@ pub struct Parts {
     vertex_count: u32,
     triangle_count: u32,
     touches: Touches,
+}
+
+impl Burning {
+    /// The parts that fall, of an object whose parts do.
+    pub fn parts(&self) -> Option<&Parts> {
+        self.parts.as_ref()
+    }
+
+    /// The pass that bends what hangs by little, of an object in which something may.
+    pub fn bending(&self) -> Option<&Bending> {
+        self.bending.as_ref()
+    }
 }
 
 impl Parts {
@@ -131,7 +164,8 @@ impl Parts {
         let weights = list("vertex-weights", &weights)?;
         let pairs: &[[u32; 2]] = if model.touching.is_empty() { &[[0, 0]] } else { &model.touching };
         let touching = list("touching", pairs.as_flattened())?;
-        for buffer in [&roots, &attached, &numbers, &part_of, &parts, &inherited, &sums, &progress] {
+        let bends = table("bends", bytemuck::cast_slice(&vec![Bend::NONE; count as usize]))?;
+        for buffer in [&roots, &attached, &numbers, &part_of, &parts, &inherited, &sums, &progress, &bends] {
             buffers.keep(shaders, buffer)?;
         }
         let step = |name: &str| {
@@ -140,7 +174,9 @@ impl Parts {
         let searched = |name: &str| step(name).with("Searching", &progress);
         let state = new("NewState", &buffers.states);
         let rotations = new("NewRotations", &buffers.rotations);
-        let placed = |name: &str| searched(name).with("Cells", &buffers.cells).with("Parts", &parts);
+        let placed = |name: &str| {
+            searched(name).with("Cells", &buffers.cells).with("Parts", &parts).with("Bends", &bends)
+        };
         let inherit = placed("inherit")
             .with("Roots", &roots)
             .with("Attached", &attached)
@@ -199,6 +235,7 @@ impl Parts {
             part_of,
             parts,
             weights,
+            bends,
             progress,
             sums,
             take: [[inherit, adopt, clear, moments], [odd_inherit, odd_adopt, odd_clear, odd_moments]],
@@ -211,6 +248,11 @@ impl Parts {
             triangle_count: model.triangle_count(),
             touches: Touches { count: model.touching.len() as u32 },
         })
+    }
+
+    /// Gives a pass what moves places in the object to the world (`burning/posed.glsl`).
+    pub(super) fn posing(&self, pass: PassBuilder) -> PassBuilder {
+        pass.with("PartOf", &self.part_of).with("Parts", &self.parts).with("Bends", &self.bends)
     }
 
     /// Records the part of the search that belongs to `tick`, the ticks since the fire was lit with this one.
@@ -250,13 +292,8 @@ impl Parts {
 
 /// A third of the area of each vertex's triangles at rest, in whole numbers.
 fn weights(model: &Model) -> Vec<u32> {
-    let mut areas = vec![0.0; model.rest.len()];
-    for triangle in &model.triangles {
-        let [a, b, c] = triangle.map(|vertex| model.rest[vertex as usize].position.as_dvec3());
-        let area = (b - a).cross(c - a).length();
-        triangle.iter().for_each(|&vertex| areas[vertex as usize] += area);
-    }
-    let mean = (areas.iter().sum::<f64>() / areas.len().max(1) as f64).max(f64::MIN_POSITIVE);
+    let areas = model.vertex_areas();
+    let mean = model.mean_vertex_area().max(f64::MIN_POSITIVE);
     areas.iter().map(|area| (area / mean * MEAN_WEIGHT).round().clamp(1.0, MOST_WEIGHT) as u32).collect()
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::Burning;
 use super::buffers::Buffers;
 use super::ping_pong::{self, PingPong, Work, new, old};
 use crate::gpu::transfer::upload;
@@ -48,6 +49,13 @@ pub struct Puddle {
     pub heights: [Arc<Buffer>; 2],
     /// [`Film`].
     pub film: Arc<Buffer>,
+}
+
+impl Burning {
+    /// The puddle, of what melts.
+    pub fn puddle(&self) -> Option<&Puddle> {
+        self.puddle.as_ref()
+    }
 }
 
 impl Puddle {

@@ -200,10 +200,7 @@ fn marks(
 ) -> Result<[Pass; 2], Error> {
     let step = |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
     let mark = match fallen {
-        Some((parts, ash)) => step("burning/surface-removal-mark-parts.comp")
-            .with("PartOf", &parts.part_of)
-            .with("Parts", &parts.parts)
-            .with("Ash", ash),
+        Some((parts, ash)) => parts.posing(step("burning/surface-removal-mark-parts.comp")).with("Ash", ash),
         None => step("burning/surface-removal-mark-free.comp"),
     };
     let mark = mark

@@ -73,6 +73,10 @@ pub fn targets(paper: &Burning) -> Vec<Target> {
     }
     if let Some(parts) = &paper.parts {
         targets.push(Target::words("part-of", &parts.part_of, 1).of("the part of a vertex"));
+        targets.push(
+            Target::table("bends", &parts.bends, 8)
+                .of("a vertex: quaternion x, y, z, w and offset x, y, z that bend its place, diagonals"),
+        );
         targets.push(Target::words("vertex-weights", &parts.weights, 1).of("weight of a vertex"));
         targets.push(
             Target::table("parts", &parts.parts, 24)

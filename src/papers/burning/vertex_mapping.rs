@@ -19,9 +19,7 @@ pub fn vertex_mapping(
     let pass = |shader: &str| Pass::compute("vertex-mapping", "3.5.3", shader);
     let map = match parts {
         None => pass("burning/vertex-mapping-whole.comp"),
-        Some(parts) => {
-            pass("burning/vertex-mapping-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts)
-        }
+        Some(parts) => parts.posing(pass("burning/vertex-mapping-parts.comp")),
     };
     let map = map.with("Flammabilities", &buffers.flammabilities);
     let map = map.with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Mapped", &buffers.mapped);

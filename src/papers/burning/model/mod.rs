@@ -8,6 +8,7 @@ mod division;
 mod draw_order;
 mod incidence;
 mod lattice;
+mod sections;
 mod surface_heat;
 mod touching;
 pub mod tree;
@@ -28,6 +29,7 @@ pub use self::division::Division;
 pub use self::draw_order::draw_order;
 pub use self::incidence::Incidence;
 pub use self::lattice::Lattice;
+pub use self::sections::{Cut, Hold, Joint, LENGTH_UNIT, MOST_SECTIONS, Section, Sections};
 pub use self::touching::roots_of;
 pub use self::weld::Welded;
 
@@ -68,6 +70,8 @@ pub struct Model {
     pub char_depth: f32,
     /// Pairs of vertices at which separate parts of the mesh touch and hold each other.
     pub touching: Vec<[u32; 2]>,
+    /// Of an object in which what hangs by little bends.
+    pub sections: Option<Sections>,
     /// Each edge of the mesh has two triangles, which run along it in opposite directions.
     pub is_closed: bool,
     /// Triangles of the mesh that were left out because two of their corners coincide.
@@ -153,8 +157,11 @@ impl Model {
         let rest = rest.map(|(&position, boundary_distance)| RestVertex { position, boundary_distance }).collect();
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
+        let bends = parameters.collapses(variant) && parameters.bending > 0.0;
+        let sections = bends.then(|| Sections::new(positions, &triangles, &touching, mean_edge));
         Ok(Model {
             touching,
+            sections,
             levels,
             rest,
             substances,
@@ -189,6 +196,22 @@ impl Model {
     /// Finest triangles.
     pub fn triangle_count(&self) -> u32 {
         self.triangles.len() as u32
+    }
+
+    /// A third of the area of each vertex's triangles at rest, square diagonals.
+    pub fn vertex_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.rest.len()];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|vertex| self.rest[vertex as usize].position.as_dvec3());
+            let area = (b - a).cross(c - a).length() / 6.0;
+            triangle.iter().for_each(|&vertex| areas[vertex as usize] += area);
+        }
+        areas
+    }
+
+    /// Of a vertex.
+    pub fn mean_vertex_area(&self) -> f64 {
+        self.vertex_areas().iter().sum::<f64>() / self.rest.len().max(1) as f64
     }
 
     /// Blocks of the grid.
