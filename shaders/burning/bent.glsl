@@ -3,6 +3,7 @@
 #include "burning/parts.glsl"
 #include "burning/sections.glsl"
 
+#if !defined(OBJECT_WHOLE) && !defined(OBJECT_FREE)
 layout(set = 0, binding = 101, std430) readonly buffer Bends {
     Bend bends[]; // of vertices
 };
@@ -10,3 +11,4 @@ layout(set = 0, binding = 101, std430) readonly buffer Bends {
 vec3 bent(uint vertex, vec3 place) {
     return turned(bends[vertex].turn, place) + bends[vertex].offset;
 }
+#endif

@@ -1,10 +1,8 @@
 // A vertex's place in the object, bent and moved to the world with its part, where parts fall.
 
-#include "burning/parts.glsl"
-
-#ifdef OBJECT_PARTS
 #include "burning/bent.glsl"
 
+#ifdef OBJECT_PARTS
 layout(set = 0, binding = 65, std430) readonly buffer PartOf {
     uint part_of[];
 };

@@ -89,6 +89,7 @@ use crate::gpu::{Buffer, Device, Error, Feature, Frame, ImageView, Mode, Recorde
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
+pub use self::bending::{Hinge, Load, Sizes};
 pub use self::beside::Beside;
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::chunks::{ChunkBuffers, Visits};
@@ -97,7 +98,6 @@ pub use self::flame_lights::{FireLight, LIGHT_CELLS};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Heat, Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
-pub use self::bending::{Hinge, Load, Sizes};
 pub use self::parts::{Bend, MOST_PARTS, Part, Parts, SEARCH_TICKS};
 pub use self::puddle::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH};
 pub use self::smoke_volume::{SMOKE_CELLS, SmokeGrid, SmokeVolume};

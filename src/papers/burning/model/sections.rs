@@ -176,8 +176,13 @@ impl Sections {
         let whole = |length: f64| ((length / LENGTH_UNIT).round() as u32).max(1);
         let cuts: Vec<Cut> = cuts
             .into_iter()
-            .map(|(ends, [a, b, c], triangle, length)| {
-                Cut { a, b, c, triangle, joint: numbers[&ends], length: whole(length) }
+            .map(|(ends, [a, b, c], triangle, length)| Cut {
+                a,
+                b,
+                c,
+                triangle,
+                joint: numbers[&ends],
+                length: whole(length),
             })
             .collect();
         let mut lengths = vec![0; lines.len()];
@@ -240,12 +245,7 @@ fn distances(positions: &[Vec3], beside: &[Vec<u32>]) -> Vec<f64> {
 }
 
 /// Until nothing is open. Bits of numbers that are not negative are in their order.
-fn spread(
-    positions: &[Vec3],
-    beside: &[Vec<u32>],
-    distances: &mut [f64],
-    open: &mut BinaryHeap<Reverse<(u64, u32)>>,
-) {
+fn spread(positions: &[Vec3], beside: &[Vec<u32>], distances: &mut [f64], open: &mut BinaryHeap<Reverse<(u64, u32)>>) {
     while let Some(Reverse((bits, at))) = open.pop() {
         let distance = f64::from_bits(bits);
         if distance > distances[at as usize] {
