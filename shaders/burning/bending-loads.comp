@@ -92,7 +92,7 @@ void main() {
             float left = is_pair ? min(left_of(cut.a), left_of(cut.b))
                                  : (left_of(cut.a) + left_of(cut.b) + left_of(cut.c)) / 3.0;
             // What is there holds a little, burnt out or not.
-            atomicAdd(strengths[cut.joint], cut.length * max(uint(STEPS * left), 1u));
+            atomicAdd(strengths[cut.joint], cut.units * max(uint(STEPS * left), 1u));
         }
     }
 }

@@ -50,7 +50,7 @@ layout(set = 0, binding = 111, std430) buffer Hinges {
 };
 
 layout(set = 0, binding = 112, std430) buffer Bending {
-    uint bending[3]; // workgroups over the vertices, in rows, while something bends; else 0 a row
+    uint groups[3]; // workgroups over the vertices, in rows, while something bends; else 0 a row
 };
 
 layout(push_constant, std430) uniform Sizes {
@@ -192,7 +192,7 @@ void main() {
             vec3 arm = moments[section].xyz / moments[section].w - hinge.pivot;
             vec3 axis = cross(arm, down);
             float lever = length(axis);
-            float whole = float(joints[joint].length) * LENGTH_UNIT;
+            float whole = float(joints[joint].units) * LENGTH_UNIT;
             float left = min(float(strengths[joint]) * LENGTH_UNIT / STEPS, whole);
             // Curvature beyond that at rest, over a section's width.
             float load = sizes.area * moments[section].w * lever;
@@ -210,6 +210,7 @@ void main() {
     }
     barrier();
     if (thread == 0u) {
-        bending[0] = turning_count == 0u ? 0u : (constants.vertex_count + 64u * bending[1] - 1u) / (64u * bending[1]);
+        uint row = 64u * groups[1];
+        groups[0] = turning_count * ((constants.vertex_count + row - 1u) / row);
     }
 }

@@ -11,7 +11,7 @@ struct Section {
 
 struct Joint {
     vec3 place; // middle of the line around it at rest
-    uint length; // of the line, in units
+    uint units; // of the length of the line
     uvec2 ends; // sections
 };
 
@@ -21,7 +21,7 @@ struct Cut {
     uint c;
     uint triangle; // NONE of two that touch
     uint joint;
-    uint length; // of the joint's line through it, in units
+    uint units; // of the length of the joint's line through it
 };
 
 // The sections that a vertex goes with.

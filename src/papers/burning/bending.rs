@@ -121,7 +121,7 @@ impl Bending {
         // No buffer is empty.
         let joint = Joint::none();
         let joint_list = if joints.is_empty() { std::slice::from_ref(&joint) } else { joints };
-        let cut = Cut { a: 0, b: 0, c: 0, triangle: 0, joint: 0, length: 0 };
+        let cut = Cut { a: 0, b: 0, c: 0, triangle: 0, joint: 0, units: 0 };
         let cut_list = if cuts.is_empty() { std::slice::from_ref(&cut) } else { cuts };
         let around: &[u32] = if around.is_empty() { &[0] } else { around };
         let section_table = table("sections", bytemuck::cast_slice::<Section, u8>(sections))?;

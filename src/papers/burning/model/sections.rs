@@ -25,8 +25,8 @@ host_block! {
     pub struct Joint {
         /// Middle of the line around it at rest.
         pub place: Vec3,
-        /// Of that line, in [`LENGTH_UNIT`]s.
-        pub length: u32,
+        /// Length of that line, in [`LENGTH_UNIT`]s.
+        pub units: u32,
         /// The sections that meet.
         pub ends: [u32; 2],
         _pad: [u32; 2],
@@ -47,7 +47,7 @@ host_block! {
         /// The joint that it is part of.
         pub joint: u32,
         /// Length of the joint's line through it, in [`LENGTH_UNIT`]s.
-        pub length: u32,
+        pub units: u32,
     }
 }
 
@@ -64,7 +64,7 @@ host_block! {
 impl Joint {
     /// Of no sections: stands in for an empty list.
     pub fn none() -> Self {
-        Joint { place: Vec3::ZERO, length: 0, ends: [0; 2], _pad: [0; 2] }
+        Joint { place: Vec3::ZERO, units: 0, ends: [0; 2], _pad: [0; 2] }
     }
 }
 
@@ -182,17 +182,17 @@ impl Sections {
                 c,
                 triangle,
                 joint: numbers[&ends],
-                length: whole(length),
+                units: whole(length),
             })
             .collect();
         let mut lengths = vec![0; lines.len()];
-        cuts.iter().for_each(|cut| lengths[cut.joint as usize] += cut.length);
+        cuts.iter().for_each(|cut| lengths[cut.joint as usize] += cut.units);
         let joints: Vec<Joint> = lines
             .iter()
             .zip(&lengths)
             .map(|((&ends, &(length, sum)), &whole)| {
                 let place = (sum / length.max(f64::MIN_POSITIVE)).as_vec3();
-                Joint { place, length: whole, ends, _pad: [0; 2] }
+                Joint { place, units: whole, ends, _pad: [0; 2] }
             })
             .collect();
         let (sections, around) = sections(positions, &of_vertex, count, &joints);
@@ -370,7 +370,7 @@ mod tests {
         let count = divided.sections.len() - 1;
         assert!((20..32).contains(&count), "{count}");
         // Of rings and of the top; corners of bands may be pieces of their own.
-        let lengths: Vec<f64> = divided.joints.iter().map(|joint| f64::from(joint.length) * LENGTH_UNIT).collect();
+        let lengths: Vec<f64> = divided.joints.iter().map(|joint| f64::from(joint.units) * LENGTH_UNIT).collect();
         let around: Vec<f64> = lengths.iter().copied().filter(|length| *length > 0.4).collect();
         assert!(around.len() >= 20, "{lengths:?}");
         assert!(around.iter().all(|length| (0.7..1.4).contains(length)), "{lengths:?}");
