@@ -5,10 +5,11 @@ use std::sync::Arc;
 use fumarole::gpu::Device;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::falling::{Body, components, moments};
-use fumarole::papers::burning::{Heat, MOST_PARTS, Parameters, Part, SEARCH_TICKS, Variant};
+use fumarole::papers::burning::{Bend, Heat, MOST_PARTS, Parameters, Part, SEARCH_TICKS, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{DQuat, DVec3, Mat4, Quat, Vec3};
 
+use super::bending::bent;
 use super::fire::{Fire, State};
 use crate::common::gpu_test;
 
@@ -54,7 +55,7 @@ fn table() -> Mesh {
     with_triangles(&boxes(&[&[top][..], &legs].concat()), 2500)
 }
 
-fn meshes() -> [Mesh; 4] {
+pub fn meshes() -> [Mesh; 4] {
     let bunny = with_triangles(&MeshSource::Bunny.load().unwrap(), 1500);
     let teapot = with_triangles(&MeshSource::Teapot.load().unwrap(), 1500);
     [bunny, teapot, table(), with_triangles(&shapes::sphere(32, 32), 1000)]
@@ -77,7 +78,12 @@ impl Seen {
             part_of: fire.read(&parts.part_of),
             parts: fire.read(&parts.parts),
             weights: weights.into_iter().map(f64::from).collect(),
-            places: state.vertices.iter().map(|v| v.position.as_dvec3()).collect(),
+            places: fire
+                .read::<Bend>(&parts.bends)
+                .iter()
+                .zip(&state.vertices)
+                .map(|(bend, v)| bent(bend, v.position))
+                .collect(),
         }
     }
 

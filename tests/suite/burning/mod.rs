@@ -1,5 +1,6 @@
 //! The paper `burning` on the device: against its laws.
 
+mod bending;
 mod dump;
 mod falling;
 mod fire;

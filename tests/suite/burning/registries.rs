@@ -10,9 +10,9 @@ use super::fire::Fire;
 use super::puddle::{Puddle, enclosed, wax};
 use crate::common::gpu_test;
 
-const FILES: [&str; 5] = ["ant.ply", "airplane.ply", "spider.obj", "wuson.stl", "teapot.obj"];
+pub const FILES: [&str; 5] = ["ant.ply", "airplane.ply", "spider.obj", "wuson.stl", "teapot.obj"];
 
-fn load(file: &str) -> Mesh {
+pub fn load(file: &str) -> Mesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/meshes").join(file);
     MeshSource::File(path).load().unwrap()
 }

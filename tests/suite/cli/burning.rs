@@ -61,7 +61,7 @@ fn the_passes_follow_the_chapters() {
         passes.insert(draw, "flame-lights");
         passes.push("tone");
         if variant != "melting" {
-            passes.splice(flames..flames, ["parts", "falling"]);
+            passes.splice(flames..flames, ["parts", "bending", "falling"]);
         }
         assert_eq!(names(&listed["passes"]), passes, "{variant}");
         // Everything static is uploaded once (3.7.4): no pass of a frame moves data between host and device.

@@ -4,6 +4,7 @@
 //! [`Tick::step`] advances a [`State`] by 1/60 s, pass by pass. Where rounding may decide otherwise than here, passes
 //! answer how close their decisions were.
 
+pub mod bending;
 mod blocks;
 pub mod boundary;
 pub mod displacement;
