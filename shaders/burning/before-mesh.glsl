@@ -12,14 +12,9 @@ layout(location = 3) flat in float own_random; // 0 to 1
 
 layout(location = 0) out vec4 shaded;
 
-// Of the square before the mesh at this pixel, diagonals.
+// Of the square before the mesh at this pixel of the layer, diagonals.
 float before_mesh(ivec2 pixel) {
-#ifdef LIGHT_FLAMES
-    ivec2 of_picture = layer_pixel(pixel);
-#else
-    ivec2 of_picture = pixel;
-#endif
-    return eye_distance(texelFetch(mesh_depth, of_picture, 0).x) - eye_depth;
+    return eye_distance(texelFetch(mesh_depth, layer_pixel(pixel), 0).x) - eye_depth;
 }
 
 // The share of it that shows at that distance.

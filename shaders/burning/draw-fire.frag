@@ -1,7 +1,5 @@
 #version 450
 
-#pragma variants LIGHT=sun,flames
-
 // Fire adds light: its alpha is 0.
 
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,11 +1,9 @@
 // A smooth noise of the plane, 0 to 1: random values at whole places, blended by cubics.
 
+#include "burning/lattice.glsl"
+
 float lattice(ivec2 at) {
-    uint h = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u;
-    h ^= h >> 15u;
-    h *= 0x846ca68bu;
-    h ^= h >> 16u;
-    return float(h & 0xffffu);
+    return mixed(uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u);
 }
 
 float noise(vec2 at) {

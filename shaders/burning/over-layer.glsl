@@ -11,7 +11,8 @@ float distance_at(ivec2 pixel) {
     return eye_distance(texelFetch(mesh_depth, pixel, 0).x);
 }
 
-vec3 with_fire(vec3 light, ivec2 pixel) {
+// Premultiplied.
+vec4 fire_at(ivec2 pixel) {
     int scale = int(billboards.layer_scale);
     vec2 at = vec2(pixel - scale / 2) / float(scale);
     ivec2 first = ivec2(floor(at));
@@ -36,6 +37,10 @@ vec3 with_fire(vec3 light, ivec2 pixel) {
         sum += weight * texelFetch(fire_layer, texel, 0);
         weights += weight;
     }
-    vec4 fire = sum / max(weights, 1.0e-6);
+    return sum / max(weights, 1.0e-6);
+}
+
+vec3 with_fire(vec3 light, ivec2 pixel) {
+    vec4 fire = fire_at(pixel);
     return light * (1.0 - fire.a) + fire.rgb;
 }

@@ -1,12 +1,10 @@
 // The rings of a tree around a vertical axis beside the object, as a factor of the albedo: ours, the dissertation's
 // objects have textures that it does not name.
 
+#include "burning/lattice.glsl"
+
 float wood_hash(ivec3 at) {
-    uint h = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u ^ uint(at.z) * 0xcb1ab31fu;
-    h ^= h >> 15u;
-    h *= 0x846ca68bu;
-    h ^= h >> 16u;
-    return float(h & 0xffffu);
+    return mixed(uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u ^ uint(at.z) * 0xcb1ab31fu);
 }
 
 float wood_noise(vec3 at) {

@@ -67,6 +67,11 @@ impl Parameters {
         self.look == Look::Natural && self.shading == Shading::Lit
     }
 
+    /// True where fire and smoke are drawn into a layer that goes over the picture once.
+    pub fn has_fire_layer(&self) -> bool {
+        self.has_linear_light() || self.fire_scale > 1
+    }
+
     /// True where smoke is a volume in the light of the flames.
     pub fn has_smoke_volume(&self) -> bool {
         self.has_linear_light() && self.smoke_as == SmokeAs::Volume && self.smoke > 0

@@ -1,4 +1,5 @@
-//! `draw-fire` (3.6): the particles of fire and smoke over the mesh, or in a layer of their own that `tone` lays over it.
+//! `draw-fire` (3.6): the particles of fire and smoke, in a layer of their own that goes over the picture once, or in the
+//! picture itself.
 
 use std::sync::Arc;
 
@@ -18,6 +19,8 @@ pub struct DrawFire {
     /// Smoke, then fire, with their vertices and instances: what of the smoke hides fire is in front mostly, and fire
     /// shines through. A shader each, for devices that run both sides of a branch would pay for both everywhere.
     steps: [(Pass, [u32; 2]); 2],
+    /// Lays the layer over a picture that `tone` does not make.
+    over: Option<Pass>,
     /// The picture, or the layer: linear light, and what it leaves of the light behind it.
     pub target: Arc<ImageView>,
 }
@@ -35,14 +38,14 @@ impl DrawFire {
         (draw, flames): (&Draw, &Flames),
         fire_lights: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
-        let (light, target, load) = match fire_lights {
-            None => ("sun", draw.picture.clone(), Load::Keep),
-            Some(_) => {
-                let [width, height] = layer_size(parameters);
-                let desc = ImageDesc::new_2d(format!("{label}/fire-layer"), LIGHT, width, height)
-                    .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED);
-                ("flames", Image::new(shaders.device(), desc)?.view()?, Load::Clear([0.0; 4]))
-            }
+        let light = if fire_lights.is_some() { "flames" } else { "sun" };
+        let (target, load) = if parameters.has_fire_layer() {
+            let [width, height] = layer_size(parameters);
+            let desc = ImageDesc::new_2d(format!("{label}/fire-layer"), LIGHT, width, height)
+                .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED);
+            (Image::new(shaders.device(), desc)?.view()?, Load::Clear([0.0; 4]))
+        } else {
+            (draw.picture.clone(), Load::Keep)
         };
         let step = |vertex: &str, fragment: &str, load| {
             let [vertex, fragment] = [vertex, fragment].map(|shader| format!("burning/{shader}"));
@@ -77,9 +80,22 @@ impl DrawFire {
                 (smoke, [3, 1])
             }
         };
-        let fire = step("draw-fire.vert", &format!("draw-fire-{light}.frag"), Load::Keep);
-        let [smoke, fire] = Pass::steps([smoke.build(shaders)?, fire.build(shaders)?]);
-        Ok(DrawFire { volume, steps: [(smoke, drawn), (fire, [4, parameters.fire])], target })
+        let fire = step("draw-fire.vert", "draw-fire.frag", Load::Keep);
+        let [smoke, fire] = [smoke.build(shaders)?, fire.build(shaders)?];
+        let (smoke, fire, over) = if parameters.has_fire_layer() && fire_lights.is_none() {
+            let over = Pass::graphics("draw-fire", "3.6", "common/fullscreen.vert", "burning/draw-fire-over.frag")
+                .with("billboards", &flames.billboards)
+                .with("mesh_depth", &draw.depth)
+                .with("fire_layer", &target)
+                .color(&draw.picture, Load::Keep, Blend::Premultiplied)
+                .build(shaders)?;
+            let [smoke, fire, over] = Pass::steps([smoke, fire, over]);
+            (smoke, fire, Some(over))
+        } else {
+            let [smoke, fire] = Pass::steps([smoke, fire]);
+            (smoke, fire, None)
+        };
+        Ok(DrawFire { volume, steps: [(smoke, drawn), (fire, [4, parameters.fire])], over, target })
     }
 
     /// # Errors
@@ -91,6 +107,11 @@ impl DrawFire {
         self.steps.iter().try_for_each(|&(ref step, [vertices, instances])| {
             frame.graphics(step, |draw| {
                 draw.instances(vertices, instances);
+            })
+        })?;
+        self.over.iter().try_for_each(|over| {
+            frame.graphics(over, |draw| {
+                draw.vertices(3);
             })
         })
     }

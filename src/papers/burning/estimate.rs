@@ -88,7 +88,7 @@ impl Parameters {
         // Linear light, and the layer of fire and smoke.
         let [columns, rows] = draw_fire::layer_size(self).map(f64::from);
         let of_light = if has_light { 8.0 * pixels } else { 0.0 };
-        let of_layer = if has_light && particles > 0.0 { 8.0 * columns * rows } else { 0.0 };
+        let of_layer = if self.has_fire_layer() && particles > 0.0 { 8.0 * columns * rows } else { 0.0 };
         let of_block =
             2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + VECTOR + size_of::<Group>() as f64;
 

@@ -259,7 +259,7 @@ const PARTICLES: Range = Range::from(0.0).to(1e6);
 
 const FACTOR: Range = Range::from(0.0).to(1e3);
 
-const FIRE_SCALE: &str = "Draw fire and smoke in pixels of so many along a side, of the natural look";
+const FIRE_SCALE: &str = "Draw fire and smoke in pixels of so many along a side";
 const CLIMB: &str = "Heat along the surface comes this many times farther where flames lean, beside the one";
 const WIND: &str = "Wind, which flames and smoke drift with, and which leans the climbing heat";
 const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";

@@ -45,18 +45,18 @@ pub fn targets(paper: &Burning) -> Vec<Target> {
                 "a light of the flames: x, y, z, radius in diagonals, linear red, green, blue, count of the lights",
             ),
         );
-        if let Some(draw_fire) = &paper.draw_fire {
-            targets.push(Target::image("fire-layer", &draw_fire.target).of("linear light of fire and smoke, alpha"));
-            if let Some(volume) = paper.smoke_volume() {
-                targets.push(
-                    Target::table("smoke-grid", &volume.grid, 4).of("corner x, y, z and width of a cell of the smoke"),
-                );
-                targets.push(
-                    Target::table("smoke-volume", &volume.cells, 4)
-                        .of("a cell of the smoke: light in red, green, blue times extinction, extinction"),
-                );
-            }
+        if let Some(volume) = paper.smoke_volume() {
+            targets.push(
+                Target::table("smoke-grid", &volume.grid, 4).of("corner x, y, z and width of a cell of the smoke"),
+            );
+            targets.push(
+                Target::table("smoke-volume", &volume.cells, 4)
+                    .of("a cell of the smoke: light in red, green, blue times extinction, extinction"),
+            );
         }
+    }
+    if let Some(draw_fire) = paper.draw_fire.as_ref().filter(|_| paper.parameters.has_fire_layer()) {
+        targets.push(Target::image("fire-layer", &draw_fire.target).of("linear light of fire and smoke, alpha"));
     }
     if let Some(refinement) = &paper.refinement {
         targets.push(

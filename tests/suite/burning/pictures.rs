@@ -77,6 +77,7 @@ fn the_pictures_are_the_golden_ones() {
                 first_frame: 120,
                 fire: 300,
                 smoke: 100,
+                fire_scale: 1,
                 width: 128,
                 height: 96,
                 ..text()
