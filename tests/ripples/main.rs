@@ -19,6 +19,19 @@ fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
+/// README's guide, "How to add a paper", shows the declaration of this paper's parameter as it is.
+#[test]
+fn the_guide_quotes_the_paper() {
+    let unspaced = |text: &str| text.split_whitespace().collect::<String>();
+    let guide = include_str!("../../README.md").split("## How to add a paper").nth(1).unwrap();
+    let quoted = guide.split("```rust").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    assert!(quoted.contains("Parameter::new(\"wavelength\""), "{quoted}");
+    assert!(
+        unspaced(include_str!("paper.rs")).contains(&unspaced(quoted)),
+        "not as tests/ripples/paper.rs has it: {quoted}"
+    );
+}
+
 #[test]
 fn every_verb_works_for_a_paper_of_150_lines() {
     let out = tempfile::tempdir().unwrap();

@@ -107,8 +107,13 @@ impl Study for Setup {
     type Options = ();
 
     fn parameters() -> Vec<Parameter<Self>> {
-        let wavelength = Parameter::new("wavelength", field!(Setup.wavelength_px)).range(Range::from(2.0).to(1e4));
-        vec![wavelength.unit("pixels").help("Length of a wave, L").section("eq. 1")]
+        vec![
+            Parameter::new("wavelength", field!(Setup.wavelength_px))
+                .range(Range::from(2.0).to(1e4))
+                .unit("pixels")
+                .help("Length of a wave, L")
+                .section("eq. 1"),
+        ]
     }
 
     fn experiments() -> Vec<Experiment<Self>> {
