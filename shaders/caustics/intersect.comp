@@ -8,9 +8,10 @@ layout(local_size_x = 64) in;
 #include "common/elements.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/shadow-{SHADOW}.glsl"
+#include "caustics/landing.glsl"
 
 layout(std430, set = 0, binding = 5) buffer Landings {
-    vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d); -1 for a ray that does not land, -2 without light
+    vec4 list[]; // a Landing each
 } landings;
 
 layout(std430, set = 0, binding = 11) buffer Intensities {
@@ -136,22 +137,22 @@ void main() {
     }
     Ray ray = ray_at(index);
     // Of a ray that meets nothing, the place halfway down the box.
-    vec4 landing = vec4(place_at(ray.origin, ray.slope, 0.0), 0.0, -2.0);
+    Landing landing = Landing(vec3(place_at(ray.origin, ray.slope, 0.0), 0.0), -2.0);
     float light = 0.0;
     if (ray.enters > 0.0 && ray.origin.y > plane.middle - plane.half_height) {
         vec4 hit = first_hit(ray.origin, ray.slope);
-        landing.w = -1.0;
+        landing.weight = -1.0;
         if (hit.w > 0.0) {
             vec2 place = (hit.xy - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
-            landing.xyz = hit.xyz;
+            landing.place = hit.xyz;
             if (reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
                 float descent = max(ray.origin.y - plane.middle - hit.z, 0.0);
                 float passed = exp(-plane.absorption_per_m * (descent * ray.secant));
-                landing.w = passed * ray.secant;
+                landing.weight = passed * ray.secant;
                 light = passed * intensity_at(index, ray, hit.z);
             }
         }
     }
-    landings.list[index] = landing;
+    landings.list[index] = whole_of(landing);
     intensities.list[index] = light;
 }

@@ -12,9 +12,10 @@ layout(local_size_x = 64) in;
 #include "caustics/hit-sums.glsl"
 #include "caustics/cover.glsl"
 #include "caustics/water-triangle.glsl"
+#include "caustics/landing.glsl"
 
 layout(std430, set = 0, binding = 5) readonly buffer Landings {
-    vec4 list[];
+    vec4 list[]; // a Landing each
 } landings;
 
 layout(std430, set = 0, binding = 11) readonly buffer Intensities {
@@ -131,11 +132,11 @@ float height_in_texel(Landed whole, float x, float y) {
     return whole.height + dot(whole.climb, vec2(x, y) + 0.5 - whole.middle);
 }
 
-Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec3 lights, vec2 base) {
+Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, Landing a, Landing b, Landing c, vec3 lights, vec2 base) {
     Landed whole = Landed(false, vec2(0.0), vec2(0.0), vec2(0.0), vec2(1.0e6), vec2(-1.0e6), 0.0, vec2(0.0), vec2(0.0), 0.0, vec2(0.0));
-    float least = min(a.w, min(b.w, c.w));
-    vec2 low = min(a.xy, min(b.xy, c.xy));
-    vec2 high = max(a.xy, max(b.xy, c.xy));
+    float least = min(a.weight, min(b.weight, c.weight));
+    vec2 low = min(a.place.xy, min(b.place.xy, c.place.xy));
+    vec2 high = max(a.place.xy, max(b.place.xy, c.place.xy));
     float size = float(plane.map_size);
     bool misses = any(greaterThanEqual(low, vec2(size))) || any(lessThan(high, vec2(0.0)));
     if (least < -1.5 || (least >= 0.0 && misses)) {
@@ -143,20 +144,20 @@ Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec3 ligh
     }
     vec2 rectangle = min(high, vec2(size)) - max(low, vec2(0.0)) + 2.0;
     bool is_one = least >= 0.0 && rectangle.x * rectangle.y <= MOST_TEXELS;
-    float turned = is_one ? divisor(ray_a, ray_b, ray_c, a.xyz, b.xyz, c.xyz) : 0.0;
-    if (abs(turned - 1.0) > TURNED || !lies_flat(a.xyz, b.xyz, c.xyz)) {
+    float turned = is_one ? divisor(ray_a, ray_b, ray_c, a.place, b.place, c.place) : 0.0;
+    if (abs(turned - 1.0) > TURNED || !lies_flat(a.place, b.place, c.place)) {
         whole.straddles = true;
         return whole;
     }
     vec3 face = face_of(ray_a, ray_b, ray_c);
-    float flux = max(-dot(face, ray_a.incident * a.w + ray_b.incident * b.w + ray_c.incident * c.w) / 3.0, 0.0);
-    whole.p = a.xy - base;
-    whole.q = b.xy - base;
-    whole.r = c.xy - base;
+    float flux = max(-dot(face, ray_a.incident * a.weight + ray_b.incident * b.weight + ray_c.incident * c.weight) / 3.0, 0.0);
+    whole.p = a.place.xy - base;
+    whole.q = b.place.xy - base;
+    whole.r = c.place.xy - base;
     whole.middle = (whole.p + whole.q + whole.r) / 3.0;
     whole.rise = rise_of(whole.p, whole.q, whole.r, lights);
-    whole.height = (a.z + b.z + c.z) / 3.0;
-    whole.climb = gradient_of(whole.p, whole.q, whole.r, vec3(a.z, b.z, c.z));
+    whole.height = (a.place.z + b.place.z + c.place.z) / 3.0;
+    whole.climb = gradient_of(whole.p, whole.q, whole.r, vec3(a.place.z, b.place.z, c.place.z));
     widen(whole.p, whole.q, whole.r);
     whole.low = min(whole.p, min(whole.q, whole.r));
     whole.high = max(whole.p, max(whole.q, whole.r));
@@ -170,17 +171,17 @@ void main() {
         return;
     }
     uvec4 corners = uvec4(indices.list[first], indices.list[first + 1u], indices.list[first + 2u], indices.list[first + 5u]);
-    vec4 a = landings.list[corners.x];
-    vec4 b = landings.list[corners.y];
-    vec4 c = landings.list[corners.z];
-    vec4 d = landings.list[corners.w];
+    Landing a = landing_of(landings.list[corners.x]);
+    Landing b = landing_of(landings.list[corners.y]);
+    Landing c = landing_of(landings.list[corners.z]);
+    Landing d = landing_of(landings.list[corners.w]);
     Ray ray_a = ray_at(corners.x);
     Ray ray_b = ray_at(corners.y);
     Ray ray_c = ray_at(corners.z);
     Ray ray_d = ray_at(corners.w);
     // Small numbers keep their digits.
     float size = float(plane.map_size);
-    vec2 base = clamp(floor(min(min(a.xy, b.xy), min(c.xy, d.xy))), vec2(-1.0), vec2(size));
+    vec2 base = clamp(floor(min(min(a.place.xy, b.place.xy), min(c.place.xy, d.place.xy))), vec2(-1.0), vec2(size));
     // As the mesh lists them: a, b, c and c, b, d.
     vec3 lights = vec3(intensities.list[corners.x], intensities.list[corners.y], intensities.list[corners.z]);
     Landed one = landed(ray_a, ray_b, ray_c, a, b, c, lights, base);

@@ -1,9 +1,10 @@
 // Planes of smart slicing (section 4.7.2), as culling finds them: by the sub-boxes that hold the receiver.
 
 #include "caustics/levels.glsl"
+#include "caustics/slices.glsl"
 
 layout(std430, set = 0, binding = 8) readonly buffer Sliced {
-    vec4 list[]; // of each level's sub-box: its top, cells per metre, first plane and last one
+    vec4 list[]; // the Slices of each level
 } sliced;
 
 layout(std430, set = 0, binding = 9) readonly buffer Placed {
@@ -26,7 +27,8 @@ vec2 descent_texels() {
 }
 
 float plane_of(float height) {
-    vec4 slices = sliced.list[level_of(height, (cull.top - height) * cull.depth_levels_per_m, cull.depth_levels)];
+    uint level = level_of(height, (cull.top - height) * cull.depth_levels_per_m, cull.depth_levels);
+    Slices slices = slices_of(sliced.list[level]);
     // No cell is lower than 2^-16 of the box.
-    return by_cell((slices.x - height) * slices.y, height, slices.z, slices.w, 0.05);
+    return by_cell((slices.top - height) * slices.cells_per_m, height, slices.first_plane, slices.last_plane, 0.05);
 }

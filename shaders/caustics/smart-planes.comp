@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "caustics/sub-box.glsl"
 #include "caustics/levels.glsl"
 #include "caustics/cell.glsl"
+#include "caustics/slices.glsl"
 
 layout(std430, set = 0, binding = 2) readonly buffer SubBoxes {
     SubBox list[];
@@ -24,7 +25,7 @@ layout(std430, set = 0, binding = 4) buffer Cells {
 } cells;
 
 layout(std430, set = 0, binding = 5) buffer Sliced {
-    vec4 list[]; // of each level's sub-box: its top, cells per metre, first plane and last one
+    vec4 list[]; // the Slices of each level
 } sliced;
 
 // The sub-box of a plane, or of a level that is held: the last that begins no later.
@@ -74,7 +75,7 @@ void main() {
             SubBox box = sub_box_of(at, false);
             Fit fit = fits.list[box.end - box.first - 1u];
             float last = float(box.first_plane + box.planes - 1u);
-            sliced.list[at] = vec4(top_of(box), 1.0 / (fit.coarse + fit.fine), float(box.first_plane), last);
+            sliced.list[at] = whole_of(Slices(top_of(box), 1.0 / (fit.coarse + fit.fine), float(box.first_plane), last));
             // As the next frame wants it.
             held.list[at] = 0u;
         }

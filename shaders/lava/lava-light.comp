@@ -17,7 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1) uniform texture2D normal_height;
 
 layout(set = 0, binding = 2, std430) buffer Lamps {
-    vec4 list[];
+    vec4 list[]; // three of each Lamp
 } lamps;
 
 layout(push_constant, std430) uniform Squares {

@@ -17,7 +17,7 @@ layout(location = 2) out float eye_depth_m;
 
 #ifdef SIMULATION_SPH
 layout(set = 0, binding = 2, std430) readonly buffer Lamps {
-    vec4 list[];
+    vec4 list[]; // three of each Lamp
 } lamps;
 
 layout(location = 3) out vec3 to_front;
@@ -37,11 +37,9 @@ void main() {
     vec3 front = vec3(0.0);
     vec3 back = vec3(0.0);
     for (uint i = 0u; i < count; i++) {
-        vec4 place = lamps.list[3u * i];
-        vec3 direction = lamps.list[3u * i + 1u].xyz;
-        vec3 light = lamps.list[3u * i + 2u].rgb;
-        front += light_of(place, direction, light, position, outwards);
-        back += light_of(place, direction, light, position, -outwards);
+        Lamp lamp = lamp_of(lamps.list[3u * i], lamps.list[3u * i + 1u], lamps.list[3u * i + 2u]);
+        front += light_of(lamp, position, outwards);
+        back += light_of(lamp, position, -outwards);
     }
     to_front = front;
     to_back = back;
