@@ -21,6 +21,7 @@ pub mod file;
 pub mod gpu;
 pub mod image;
 pub mod measure;
+mod names;
 pub mod papers;
 pub mod report;
 pub mod scene;

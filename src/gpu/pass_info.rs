@@ -4,29 +4,20 @@ use std::sync::Arc;
 
 use super::executable::Executable;
 use super::shader::Compiler;
+use crate::named;
 
-/// The part of the machine that a pass keeps busy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PassKind {
-    /// Draws.
-    Graphics,
-    /// Dispatches.
-    Compute,
-    /// Copies.
-    Transfer,
-    /// Work of the processor.
-    Host,
-}
-
-impl PassKind {
-    /// The name that records and tables use.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            PassKind::Graphics => "graphics",
-            PassKind::Compute => "compute",
-            PassKind::Transfer => "transfer",
-            PassKind::Host => "host",
-        }
+named! {
+    /// The part of the machine that a pass keeps busy.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum PassKind {
+        /// Draws.
+        Graphics = "graphics",
+        /// Dispatches.
+        Compute = "compute",
+        /// Copies.
+        Transfer = "transfer",
+        /// Work of the processor.
+        Host = "host",
     }
 }
 

@@ -10,100 +10,52 @@ use super::instance::{Instance, version_text};
 use super::messages::text;
 use super::performance::{self, PerformanceCounter};
 use super::portability;
+use crate::named;
 
-/// The kinds of device, in the order of preference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum DeviceType {
-    Discrete,
-    Integrated,
-    Virtual,
-    Cpu,
-    Other,
-}
-
-impl DeviceType {
-    /// The name that records and tables use.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            DeviceType::Discrete => "discrete",
-            DeviceType::Integrated => "integrated",
-            DeviceType::Virtual => "virtual",
-            DeviceType::Cpu => "cpu",
-            DeviceType::Other => "other",
-        }
+named! {
+    /// The kinds of device, in the order of preference.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum DeviceType {
+        Discrete = "discrete",
+        Integrated = "integrated",
+        Virtual = "virtual",
+        Cpu = "cpu",
+        Other = "other",
     }
 }
 
-/// A capability that a paper may need and a device may lack.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Feature {
-    /// `synchronization2` of Vulkan 1.3: every barrier is written with it.
-    Synchronization2,
-    /// `hostQueryReset` of Vulkan 1.2: the timestamps are reset on the host.
-    HostQueryReset,
-    /// Different blend states for the attachments of one pass.
-    IndependentBlend,
-    /// Additive blending into one 32-bit float channel (caustics map).
-    BlendR32Float,
-    /// Blending into four 16-bit float channels (illumination map).
-    BlendRgba16Float,
-    /// Blending into four 32-bit float channels.
-    BlendRgba32Float,
-    /// Geometry stages.
-    GeometryShader,
-    /// Points larger than one pixel.
-    LargePoints,
-    /// Storage writes in fragment stages.
-    FragmentStores,
-    /// Counting vertices, primitives and invocations.
-    PipelineStatistics,
-    /// Exact counts of samples passed.
-    PreciseOcclusion,
-    /// Time timestamps on the graphics and compute queue.
-    Timestamps,
-    /// The depth and stencil format with 32 bits of depth.
-    DepthStencil32,
-    /// `maintenance4` of Vulkan 1.3: a stage may write what the next does not read.
-    Maintenance4,
-}
-
-impl Feature {
-    /// Every feature, in the order of the capability report.
-    pub const ALL: [Feature; 14] = [
-        Feature::Synchronization2,
-        Feature::HostQueryReset,
-        Feature::IndependentBlend,
-        Feature::BlendR32Float,
-        Feature::BlendRgba16Float,
-        Feature::BlendRgba32Float,
-        Feature::GeometryShader,
-        Feature::LargePoints,
-        Feature::FragmentStores,
-        Feature::PipelineStatistics,
-        Feature::PreciseOcclusion,
-        Feature::Timestamps,
-        Feature::DepthStencil32,
-        Feature::Maintenance4,
-    ];
-
-    /// The name that the capability report and the error messages use.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Feature::Synchronization2 => "synchronization2",
-            Feature::HostQueryReset => "host-query-reset",
-            Feature::IndependentBlend => "independent-blend",
-            Feature::BlendR32Float => "blend-r32f",
-            Feature::BlendRgba16Float => "blend-rgba16f",
-            Feature::BlendRgba32Float => "blend-rgba32f",
-            Feature::GeometryShader => "geometry-shader",
-            Feature::LargePoints => "large-points",
-            Feature::FragmentStores => "fragment-stores",
-            Feature::PipelineStatistics => "pipeline-statistics",
-            Feature::PreciseOcclusion => "precise-occlusion",
-            Feature::Timestamps => "timestamps",
-            Feature::DepthStencil32 => "depth-stencil-d32s8",
-            Feature::Maintenance4 => "maintenance4",
-        }
+named! {
+    /// A capability that a paper may need and a device may lack.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Feature {
+        /// `synchronization2` of Vulkan 1.3: every barrier is written with it.
+        Synchronization2 = "synchronization2",
+        /// `hostQueryReset` of Vulkan 1.2: the timestamps are reset on the host.
+        HostQueryReset = "host-query-reset",
+        /// Different blend states for the attachments of one pass.
+        IndependentBlend = "independent-blend",
+        /// Additive blending into one 32-bit float channel (caustics map).
+        BlendR32Float = "blend-r32f",
+        /// Blending into four 16-bit float channels (illumination map).
+        BlendRgba16Float = "blend-rgba16f",
+        /// Blending into four 32-bit float channels.
+        BlendRgba32Float = "blend-rgba32f",
+        /// Geometry stages.
+        GeometryShader = "geometry-shader",
+        /// Points larger than one pixel.
+        LargePoints = "large-points",
+        /// Storage writes in fragment stages.
+        FragmentStores = "fragment-stores",
+        /// Counting vertices, primitives and invocations.
+        PipelineStatistics = "pipeline-statistics",
+        /// Exact counts of samples passed.
+        PreciseOcclusion = "precise-occlusion",
+        /// Timestamps on the graphics and compute queue.
+        Timestamps = "timestamps",
+        /// The depth and stencil format with 32 bits of depth.
+        DepthStencil32 = "depth-stencil-d32s8",
+        /// `maintenance4` of Vulkan 1.3: a stage may write what the next does not read.
+        Maintenance4 = "maintenance4",
     }
 }
 

@@ -11,6 +11,7 @@ use super::error::{Context, Error};
 use super::format::format_info;
 use super::image::ImageView;
 use super::live::Kind;
+use crate::named;
 use crate::shader_build::Scalar;
 
 /// Contents of an attachment when a pass begins.
@@ -24,36 +25,26 @@ pub enum Load {
     Discard,
 }
 
-/// Blend state of a colour attachment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Blend {
-    /// The fragment's colour.
-    Replace,
-    /// destination + source
-    Add,
-    /// destination x source; alpha stays.
-    Multiply,
-    /// source alpha over the destination.
-    Over,
-    /// As `Over`, with a source colour that its alpha was multiplied into: adds where that is 0.
-    Premultiplied,
-    /// Nothing is written: for the floor of a pass.
-    Masked,
+named! {
+    /// Blend state of a colour attachment.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Blend {
+        /// The fragment's colour.
+        Replace = "replace",
+        /// destination + source
+        Add = "add",
+        /// destination x source; alpha stays.
+        Multiply = "multiply",
+        /// source alpha over the destination.
+        Over = "over",
+        /// As `Over`, with a source colour that its alpha was multiplied into: adds where that is 0.
+        Premultiplied = "premultiplied over",
+        /// Nothing is written: for the floor of a pass.
+        Masked = "masked",
+    }
 }
 
 impl Blend {
-    /// The name that pass tables use.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Blend::Replace => "replace",
-            Blend::Add => "add",
-            Blend::Multiply => "multiply",
-            Blend::Over => "over",
-            Blend::Premultiplied => "premultiplied over",
-            Blend::Masked => "masked",
-        }
-    }
-
     pub(crate) fn state(self) -> vk::PipelineColorBlendAttachmentState {
         use vk::BlendFactor as F;
         let blended = |src, dst, src_alpha, dst_alpha| {
@@ -80,37 +71,27 @@ impl Blend {
     }
 }
 
-/// Depth and stencil state of a pass.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum DepthTest {
-    /// Nearer fragments pass and are written.
-    LessWrite,
-    /// As [`DepthTest::LessWrite`] of a depth that falls with the distance: 0 is farthest. Floats are dense there.
-    GreaterWrite,
-    /// Nearer fragments pass; nothing is written.
-    LessReadOnly,
-    /// Fragments of the depth that is there pass; nothing is written.
-    EqualReadOnly,
-    /// Nothing but the stencil is written: faces behind what is seen count up when they face away and down when they
-    /// face the viewer, wrapping, so that it is not zero where the surface lies inside a closed volume (z-fail).
-    CountVolume,
-    /// Depth is not tested: fragments pass where the stencil is not zero, and make it zero.
-    InsideVolume,
+named! {
+    /// Depth and stencil state of a pass.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum DepthTest {
+        /// Nearer fragments pass and are written.
+        LessWrite = "less, write",
+        /// As [`DepthTest::LessWrite`] of a depth that falls with the distance: 0 is farthest. Floats are dense there.
+        GreaterWrite = "greater, write",
+        /// Nearer fragments pass; nothing is written.
+        LessReadOnly = "less, read only",
+        /// Fragments of the depth that is there pass; nothing is written.
+        EqualReadOnly = "equal, read only",
+        /// Nothing but the stencil is written: faces behind what is seen count up when they face away and down when they
+        /// face the viewer, wrapping, so that it is not zero where the surface lies inside a closed volume (z-fail).
+        CountVolume = "stencil: z-fail, wrapping",
+        /// Depth is not tested: fragments pass where the stencil is not zero, and make it zero.
+        InsideVolume = "stencil: not zero, to zero",
+    }
 }
 
 impl DepthTest {
-    /// The name that pass tables use.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            DepthTest::LessWrite => "less, write",
-            DepthTest::GreaterWrite => "greater, write",
-            DepthTest::LessReadOnly => "less, read only",
-            DepthTest::EqualReadOnly => "equal, read only",
-            DepthTest::CountVolume => "stencil: z-fail, wrapping",
-            DepthTest::InsideVolume => "stencil: not zero, to zero",
-        }
-    }
-
     pub(crate) fn state(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
         use vk::StencilOp as Op;
         let depth = |compare| {

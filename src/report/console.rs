@@ -13,7 +13,7 @@ use super::text::one_line;
 /// it concerns.
 pub fn record(record: &Record, style: Style) -> String {
     let device = &record.environment.device;
-    let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.name());
+    let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.as_str());
     for (item, alternative) in record.runs.iter().zip(alternatives(&record.runs)) {
         text.push('\n');
         text.push_str(&run(item, &alternative, style));
@@ -142,7 +142,7 @@ fn passes(run: &Run) -> Table {
         table.push(vec![
             pass.name.clone(),
             pass.section.clone().unwrap_or_default(),
-            pass.kind.name().to_owned(),
+            pass.kind.as_str().to_owned(),
             pass.calls.to_string(),
             pass.submission.filter(|_| submissions).map_or_else(String::new, |index| index.to_string()),
             gpu(pass),

@@ -22,7 +22,7 @@ type Column = (&'static str, fn(&Row) -> String);
 /// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
 const COLUMNS: [Column; 72] = [
     ("device", |row| row.record.environment.device.name.clone()),
-    ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
+    ("device_type", |row| row.record.environment.device.kind.as_str().to_owned()),
     ("paper", |row| row.run.paper.clone()),
     ("variant", |row| row.run.variant.clone()),
     ("preset", |row| cell(row.run.preset.as_ref())),
@@ -48,7 +48,7 @@ const COLUMNS: [Column; 72] = [
     ("pass_index", |row| cell(row.pass.map(|(index, _)| index))),
     ("pass", |row| row.of_pass(|pass| Some(pass.name.clone()))),
     ("section", |row| row.of_pass(|pass| pass.section.clone())),
-    ("kind", |row| row.of_pass(|pass| Some(pass.kind.name()))),
+    ("kind", |row| row.of_pass(|pass| Some(pass.kind.as_str()))),
     ("calls", |row| row.of_pass(|pass| Some(pass.calls))),
     ("submission", |row| row.of_pass(|pass| pass.submission)),
     ("shader_compiler", |row| row.of_pass(|pass| pass.shader_compiler.clone())),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Number;
 
 use super::record::Summary;
+use crate::named;
 
 /// One pass of the paper; a loop of draws is one pass with its number of calls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,25 +81,15 @@ pub struct ShaderBinary {
     pub instructions: Option<u64>,
 }
 
-/// Kind of a pass's work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PassKind {
-    Graphics,
-    Compute,
-    Transfer,
-    Host,
-}
-
-impl PassKind {
-    /// The name written in the record.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Graphics => "graphics",
-            Self::Compute => "compute",
-            Self::Transfer => "transfer",
-            Self::Host => "host",
-        }
+named! {
+    /// Kind of a pass's work.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum PassKind {
+        Graphics = "graphics",
+        Compute = "compute",
+        Transfer = "transfer",
+        Host = "host",
     }
 }
 

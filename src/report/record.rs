@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::named;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -91,27 +92,16 @@ pub struct Device {
     pub timestamp_bits: Option<u32>,
 }
 
-/// `VkPhysicalDeviceType`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DeviceKind {
-    Discrete,
-    Integrated,
-    Virtual,
-    Cpu,
-    Other,
-}
-
-impl DeviceKind {
-    /// The name written in the record.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Discrete => "discrete",
-            Self::Integrated => "integrated",
-            Self::Virtual => "virtual",
-            Self::Cpu => "cpu",
-            Self::Other => "other",
-        }
+named! {
+    /// `VkPhysicalDeviceType`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum DeviceKind {
+        Discrete = "discrete",
+        Integrated = "integrated",
+        Virtual = "virtual",
+        Cpu = "cpu",
+        Other = "other",
     }
 }
 
@@ -333,22 +323,14 @@ impl ExperimentRow {
     }
 }
 
-/// State of the validation layer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Validation {
-    /// The validation layer ran and had nothing to say.
-    Clean,
-    Off,
-}
-
-impl Validation {
-    /// The name written in the record.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Clean => "clean",
-            Self::Off => "off",
-        }
+named! {
+    /// State of the validation layer.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Validation {
+        /// The validation layer ran and had nothing to say.
+        Clean = "clean",
+        Off = "off",
     }
 }
 

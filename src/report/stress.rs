@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::lines;
 use super::record::{Environment, InputFile, Record, Run};
+use crate::named;
 
 /// The value of [`StressRecord::schema`] that this program writes and reads.
 pub const SCHEMA: &str = "fumarole.stress/1";
@@ -111,40 +112,29 @@ pub struct Step {
     pub run: Run,
 }
 
-/// Kind of the limit that ended a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum StopKind {
-    /// The budget.
-    Time,
-    /// Memory of the device or of the host.
-    Memory,
-    /// A limit or the loss of the device.
-    Device,
-    /// The picture or the results are wrong.
-    Correctness,
-    /// The axis has no greater value.
-    End,
-    /// The step's process crashed.
-    Crash,
-    /// Ctrl-C.
-    Interruption,
+named! {
+    /// Kind of the limit that ended a series.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum StopKind {
+        /// The budget.
+        Time = "time",
+        /// Memory of the device or of the host.
+        Memory = "memory",
+        /// A limit or the loss of the device.
+        Device = "device",
+        /// The picture or the results are wrong.
+        Correctness = "correctness",
+        /// The axis has no greater value.
+        End = "end",
+        /// The step's process crashed.
+        Crash = "crash",
+        /// Ctrl-C.
+        Interruption = "interruption",
+    }
 }
 
 impl StopKind {
-    /// The name written in the record.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Memory => "memory",
-            Self::Device => "device",
-            Self::Correctness => "correctness",
-            Self::End => "end",
-            Self::Crash => "crash",
-            Self::Interruption => "interruption",
-        }
-    }
-
     /// True for what a second call meets again.
     pub fn is_final(self) -> bool {
         matches!(self, Self::Memory | Self::Device | Self::Correctness)
@@ -259,7 +249,7 @@ impl StressRecord {
                 let of_pass = [
                     pass.name.clone(),
                     pass.section.clone().unwrap_or_default(),
-                    pass.kind.name().to_owned(),
+                    pass.kind.as_str().to_owned(),
                     median(&pass.gpu_ms),
                     median(&pass.host_ms),
                     median(&pass.wait_ms),

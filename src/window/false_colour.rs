@@ -3,6 +3,7 @@
 use egui::{Color32, ColorImage};
 
 use super::protocol::{TargetValues, ValueKind};
+use crate::named;
 
 /// Mapping of values to colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,30 +29,21 @@ pub enum Channel {
     One(usize),
 }
 
-/// Colours of a single channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ramp {
-    Grey,
-    /// Dark blue over green to yellow, of even steps to the eye.
-    Viridis,
-    /// Blue below the middle, red above.
-    Diverging,
-    /// A colour of its own for each integer.
-    Labels,
+named! {
+    /// Colours of a single channel.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Ramp {
+        Grey = "grey",
+        /// Dark blue over green to yellow, of even steps to the eye.
+        Viridis = "viridis",
+        /// Blue below the middle, red above.
+        Diverging = "diverging",
+        /// A colour of its own for each integer.
+        Labels = "labels",
+    }
 }
 
 impl Ramp {
-    pub const ALL: [Ramp; 4] = [Ramp::Grey, Ramp::Viridis, Ramp::Diverging, Ramp::Labels];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Ramp::Grey => "grey",
-            Ramp::Viridis => "viridis",
-            Ramp::Diverging => "diverging",
-            Ramp::Labels => "labels",
-        }
-    }
-
     /// The colour at `share` of the range.
     fn colour(self, share: f64) -> Color32 {
         const VIRIDIS: [[u8; 3]; 9] = [

@@ -151,7 +151,7 @@ impl Climber for MachineClimber<'_> {
                 let frame_ms = step.run.median_frame_ms().unwrap_or_default();
                 self.say(cell, &format!("frame {frame_ms:.2} ms; {wall_s:.1} s in all"));
             }
-            Outcome::Stopped(kind, reason) => self.say(cell, &format!("stopped by {}: {reason}", kind.name())),
+            Outcome::Stopped(kind, reason) => self.say(cell, &format!("stopped by {}: {reason}", kind.as_str())),
         }
         Ok(outcome)
     }

@@ -124,7 +124,7 @@ impl Until {
     }
 
     fn as_str(self) -> &'static str {
-        self.kind().name()
+        self.kind().as_str()
     }
 }
 
@@ -379,7 +379,7 @@ pub fn outcome_files(record: &StressRecord, stem: &str, folder: &Path, csv: Path
 fn say_unmet(record: &StressRecord, until: Until) {
     let is_met = |stop: &crate::report::stress::Stop| stop.kind == until.kind();
     for series in record.series.iter().filter(|series| !series.stop.as_ref().is_some_and(is_met)) {
-        let end = series.stop.as_ref().map_or("nothing", |stop| stop.kind.name());
+        let end = series.stop.as_ref().map_or("nothing", |stop| stop.kind.as_str());
         let variant = &series.variant;
         outcome::say(&format!("{variant}: the limit of {} was not met; what stopped it was {end}", until.as_str()));
     }

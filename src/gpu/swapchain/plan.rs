@@ -3,36 +3,25 @@
 use ash::vk;
 
 use super::super::error::Error;
+use crate::named;
 
-/// A way of presenting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum PresentMode {
-    /// Every picture in turn, at the display's pace; every display has it.
-    #[default]
-    Fifo,
-    /// As `Fifo`, and at once where one comes late.
-    FifoRelaxed,
-    /// The newest picture at the display's pace.
-    Mailbox,
-    /// At once, even in the middle of the display's own picture.
-    Immediate,
+named! {
+    /// A mode of presenting.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum PresentMode {
+        /// Every picture in turn, at the display's pace; every display has it.
+        #[default]
+        Fifo = "fifo",
+        /// As `Fifo`, and at once where one comes late.
+        FifoRelaxed = "fifo-relaxed",
+        /// The newest picture at the display's pace.
+        Mailbox = "mailbox",
+        /// At once, even in the middle of the display's own picture.
+        Immediate = "immediate",
+    }
 }
 
 impl PresentMode {
-    /// Every mode.
-    pub const ALL: [PresentMode; 4] =
-        [PresentMode::Fifo, PresentMode::FifoRelaxed, PresentMode::Mailbox, PresentMode::Immediate];
-
-    /// The name that the command line knows it by.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            PresentMode::Fifo => "fifo",
-            PresentMode::FifoRelaxed => "fifo-relaxed",
-            PresentMode::Mailbox => "mailbox",
-            PresentMode::Immediate => "immediate",
-        }
-    }
-
     pub(super) fn vulkan(self) -> vk::PresentModeKHR {
         match self {
             PresentMode::Fifo => vk::PresentModeKHR::FIFO,

@@ -70,7 +70,7 @@ fn conditions(environment: &Environment) -> Vec<(String, String)> {
     let number = |value: Option<u32>| value.map_or_else(|| "unset".to_owned(), |value| value.to_string());
     let mut conditions: Vec<(String, String)> = [
         ("device.name", device.name.clone()),
-        ("device.type", device.kind.name().to_owned()),
+        ("device.type", device.kind.as_str().to_owned()),
         ("device.driver_version", some(&device.driver_version)),
         ("host.os", host.os.clone()),
         ("host.cpu", some(&host.cpu)),

@@ -273,7 +273,7 @@ fn fields(run: &Run) -> BTreeMap<String, String> {
         ("height", run.height.to_string()),
         ("seed", run.seed.to_string()),
         ("frames", run.frames.to_string()),
-        ("validation", text(run.validation.name())),
+        ("validation", text(run.validation.as_str())),
     ];
     let config = run.config.iter().map(|(name, value)| (format!("config.{name}"), by_content(value, run).to_string()));
     // Also of a file that the parameters tell by something else than its path.

@@ -39,7 +39,7 @@ pub fn tables(record: &StressRecord, form: Form) -> String {
 
 /// `stopped by memory at 64000000 triangles: reason`.
 pub fn stop_line(record: &StressRecord, stop: &Stop) -> String {
-    format!("stopped by {} at {} {}: {}", stop.kind.name(), stop.value, record.axis.unit, stop.reason)
+    format!("stopped by {} at {} {}: {}", stop.kind.as_str(), stop.value, record.axis.unit, stop.reason)
 }
 
 fn steps(record: &StressRecord, series: &Series) -> Table {

@@ -13,35 +13,22 @@ use crate::measure::ParameterError;
 use crate::measure::parameter::{self, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Value};
 use crate::papers::tone::Tone;
 use crate::scene::Camera;
-use crate::{field, size_field};
+use crate::{field, named, size_field};
 
-/// The methods, one a chapter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variant {
-    /// Chapter 3: a dense shell.
-    Shell,
-    /// Chapter 4: few triangles, refined where they burn.
-    LowPoly,
-    /// Chapter 4's baseline: every triangle subdivided before the fire.
-    FullySubdivided,
-    /// Chapter 5: burns inward.
-    Solid,
-    /// Chapter 6: flows.
-    Melting,
-}
-
-impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] =
-        &[Variant::Shell, Variant::LowPoly, Variant::FullySubdivided, Variant::Solid, Variant::Melting];
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Variant::Shell => "shell",
-            Variant::LowPoly => "low-poly",
-            Variant::FullySubdivided => "fully-subdivided",
-            Variant::Solid => "solid",
-            Variant::Melting => "melting",
-        }
+named! {
+    /// The methods, one a chapter.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Variant: crate::measure::Variant {
+        /// Chapter 3: a dense shell.
+        Shell = "shell",
+        /// Chapter 4: few triangles, refined where they burn.
+        LowPoly = "low-poly",
+        /// Chapter 4's baseline: every triangle subdivided before the fire.
+        FullySubdivided = "fully-subdivided",
+        /// Chapter 5: burns inward.
+        Solid = "solid",
+        /// Chapter 6: flows.
+        Melting = "melting",
     }
 }
 

@@ -10,44 +10,24 @@ use super::water_map::WaterMap;
 use crate::measure::parameter::{self, Cost, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
-use crate::{choice, field, size_field};
+use crate::{choice, field, named, size_field};
 
-/// The methods that the thesis compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variant {
-    /// Section 5.2.2: one position map and one diffuse map, however many planes.
-    LevelMap,
-    /// Section 5.2.3: planes only where a depth profile finds the receiver.
-    LevelMapSmart,
-    /// Section 6.1: the level map's picture, of those pairs of triangle and plane alone that may light it.
-    Culled,
-    /// Section 6.3: each triangle of the refined water once, where its light lands.
-    Hit,
-    /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
-    Volumetric,
-    /// Section 3.2, after Iwasaki et al.: illumination volumes counted in the stencil buffer. It knows no occlusion.
-    Stencil,
-}
-
-impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[
-        Variant::LevelMap,
-        Variant::LevelMapSmart,
-        Variant::Culled,
-        Variant::Hit,
-        Variant::Volumetric,
-        Variant::Stencil,
-    ];
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Variant::LevelMap => "level-map",
-            Variant::LevelMapSmart => "level-map-smart",
-            Variant::Culled => "culled",
-            Variant::Hit => "hit",
-            Variant::Volumetric => "volumetric",
-            Variant::Stencil => "stencil",
-        }
+named! {
+    /// The methods that the thesis compares.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Variant: crate::measure::Variant {
+        /// Section 5.2.2: one position map and one diffuse map, however many planes.
+        LevelMap = "level-map",
+        /// Section 5.2.3: planes only where a depth profile finds the receiver.
+        LevelMapSmart = "level-map-smart",
+        /// Section 6.1: the level map's picture, of those pairs of triangle and plane alone that may light it.
+        Culled = "culled",
+        /// Section 6.3: each triangle of the refined water once, where its light lands.
+        Hit = "hit",
+        /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
+        Volumetric = "volumetric",
+        /// Section 3.2, after Iwasaki et al.: illumination volumes counted in the stencil buffer. It knows no occlusion.
+        Stencil = "stencil",
     }
 }
 

@@ -14,25 +14,16 @@ use crate::measure::ParameterError;
 use crate::measure::parameter::{self, Cost, Extents, Field, Parameter, Range, Value as _};
 pub use crate::papers::tone::Tone;
 use crate::scene::Camera;
-use crate::{choice, field, size_field};
+use crate::{choice, field, named, size_field};
 
-/// The methods that are compared: the thesis's, and ours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variant {
-    /// Chapters 4 to 8.
-    Paper,
-    /// Clusters, densities, accepted points and their sums on the device, without readbacks; ours.
-    GpuDriven,
-}
-
-impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[Variant::Paper, Variant::GpuDriven];
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Variant::Paper => "paper",
-            Variant::GpuDriven => "gpu-driven",
-        }
+named! {
+    /// The methods that are compared: the thesis's, and ours.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Variant: crate::measure::Variant {
+        /// Chapters 4 to 8.
+        Paper = "paper",
+        /// Clusters, densities, accepted points and their sums on the device, without readbacks; ours.
+        GpuDriven = "gpu-driven",
     }
 }
 

@@ -12,29 +12,31 @@ use crate::measure::parameter::{
 };
 use crate::measure::{self, ParameterError, components, config};
 use crate::scene::Camera;
-use crate::{choice, field, size_field};
+use crate::{choice, field, named, size_field};
 
-/// The applications of section 4, and what a user would do without them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variant {
-    /// Section 4, first application: everything on the processor, on all cores.
-    Cpu,
-    /// Section 4, second application: depth, normal and illumination by compute stages.
-    GpuCompute,
-    /// The same three as full-screen fragment passes.
-    GpuFragment,
-    /// The map as an indexed triangle grid, rasterised.
-    Mesh,
-    /// The map as patches of triangles at the level of detail that the picture needs, rasterised.
-    MeshLod,
-    /// Not the paper's: rays that go from border to border of blocks of cells, by compute stages.
-    DdaCompute,
-    /// The same as full-screen fragment passes.
-    DdaFragment,
-    /// The same on the processor, on all cores.
-    DdaCpu,
-    /// As [`Variant::GpuCompute`], over maps of which the device holds the tiles that rays ask for.
-    TiledCompute,
+named! {
+    /// The applications of section 4, and what a user would do without them.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Variant: measure::Variant {
+        /// Section 4, first application: everything on the processor, on all cores.
+        Cpu = "cpu",
+        /// Section 4, second application: depth, normal and illumination by compute stages.
+        GpuCompute = "gpu-compute",
+        /// The same three as full-screen fragment passes.
+        GpuFragment = "gpu-fragment",
+        /// The map as an indexed triangle grid, rasterised.
+        Mesh = "mesh",
+        /// The map as patches of triangles at the level of detail that the picture needs, rasterised.
+        MeshLod = "mesh-lod",
+        /// Not the paper's: rays that go from border to border of blocks of cells, by compute stages.
+        DdaCompute = "dda-compute",
+        /// The same as full-screen fragment passes.
+        DdaFragment = "dda-fragment",
+        /// The same on the processor, on all cores.
+        DdaCpu = "dda-cpu",
+        /// As [`Variant::GpuCompute`], over maps of which the device holds the tiles that rays ask for.
+        TiledCompute = "tiled-compute",
+    }
 }
 
 impl Variant {
@@ -55,34 +57,6 @@ impl Variant {
     /// Triangles instead of rays.
     pub fn is_rasterised(self) -> bool {
         matches!(self, Variant::Mesh | Variant::MeshLod)
-    }
-}
-
-impl measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[
-        Variant::Cpu,
-        Variant::GpuCompute,
-        Variant::GpuFragment,
-        Variant::Mesh,
-        Variant::MeshLod,
-        Variant::DdaCompute,
-        Variant::DdaFragment,
-        Variant::DdaCpu,
-        Variant::TiledCompute,
-    ];
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Variant::Cpu => "cpu",
-            Variant::GpuCompute => "gpu-compute",
-            Variant::GpuFragment => "gpu-fragment",
-            Variant::Mesh => "mesh",
-            Variant::MeshLod => "mesh-lod",
-            Variant::DdaCompute => "dda-compute",
-            Variant::DdaFragment => "dda-fragment",
-            Variant::DdaCpu => "dda-cpu",
-            Variant::TiledCompute => "tiled-compute",
-        }
     }
 }
 

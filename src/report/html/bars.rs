@@ -103,7 +103,7 @@ fn hint(one: &Timed) -> Markup {
 }
 
 fn kind(kind: PassKind) -> &'static str {
-    kind.name()
+    kind.as_str()
 }
 
 #[cfg(test)]

@@ -158,7 +158,7 @@ pub(super) fn environment(environment: &Environment) -> Markup {
     let (device, host, build) = (&environment.device, &environment.host, &environment.build);
     let text = |value: &Option<String>| value.clone().unwrap_or_default();
     let rows = [
-        ("device", format!("{} ({})", device.name, device.kind.name())),
+        ("device", format!("{} ({})", device.name, device.kind.as_str())),
         ("device's UUID", text(&device.uuid)),
         ("Vulkan", device.api_version.clone()),
         ("driver", format!("{} {}", text(&device.driver), text(&device.driver_version))),

@@ -108,7 +108,7 @@ fn passes(run: &Run) -> Markup {
                 tbody { @for pass in &run.passes { tr {
                     td { (pass.name) }
                     td { (pass.section.as_deref().unwrap_or_default()) }
-                    td { (pass.kind.name()) }
+                    td { (pass.kind.as_str()) }
                     @for (_, value, digits) in &shown { (cell(value(pass, run), *digits)) }
                     td { (pass.bound.as_deref().unwrap_or_default()) }
                     td { (pass.shader_compiler.as_deref().unwrap_or_default()) }

@@ -20,38 +20,24 @@ use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTextur
 use crate::measure::parameter::{self, Cost, Extents, EyeAndTarget, Field, Parameter, Range};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
-use crate::{choice, field, size_field};
+use crate::{choice, field, named, size_field};
 
-/// The ways of shadowing by the gas (section "Shadowing of the gas", figure 8).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variant {
-    /// The same scene without its volumes.
-    NoVolume,
-    /// Nothing is shadowed.
-    None,
-    /// The gas shadows surfaces, by tracing, and not itself.
-    Surfaces,
-    /// The gas shadows surfaces and itself, by tracing.
-    Traced,
-    /// The gas shadows surfaces and itself, by the shadow table.
-    Table,
-    /// As `Table`, with gas that is integrated in froxels: not the paper's.
-    Froxel,
-}
-
-impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] =
-        &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table, Variant::Froxel];
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Variant::NoVolume => "no-volume",
-            Variant::None => "none",
-            Variant::Surfaces => "surfaces",
-            Variant::Traced => "traced",
-            Variant::Table => "table",
-            Variant::Froxel => "froxel",
-        }
+named! {
+    /// The ways of shadowing by the gas (section "Shadowing of the gas", figure 8).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Variant: crate::measure::Variant {
+        /// The same scene without its volumes.
+        NoVolume = "no-volume",
+        /// Nothing is shadowed.
+        None = "none",
+        /// The gas shadows surfaces, by tracing, and not itself.
+        Surfaces = "surfaces",
+        /// The gas shadows surfaces and itself, by tracing.
+        Traced = "traced",
+        /// The gas shadows surfaces and itself, by the shadow table.
+        Table = "table",
+        /// As `Table`, with gas that is integrated in froxels: not the paper's.
+        Froxel = "froxel",
     }
 }
 

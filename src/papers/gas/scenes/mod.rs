@@ -7,6 +7,7 @@ mod glass;
 mod lathe;
 mod sweep;
 
+use crate::named;
 use glam::{Mat4, Vec2, Vec3};
 
 pub use self::chess::FOG;
@@ -17,25 +18,27 @@ use super::model::{Highlight, Object, Volume};
 use super::parameters::Parameters;
 use crate::scene::{Mesh, shapes};
 
-/// A figure's scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Preset {
-    /// A gallery with a gaseous sculpture.
-    Fig3,
-    /// Surface-defined fog over a chess board.
-    Fig4,
-    /// The gallery, self-shadowed by the table.
-    Fig5,
-    /// Steam that rises from a glass, glasses in front of, around and behind it.
-    Fig6,
-    /// Volume fog that rolls over a chess board.
-    Fig7,
-    /// Steam and one glass, for the shadowing variants.
-    Fig8,
-    /// A solid (hypertexture) volume on a pedestal.
-    Solid,
-    /// A layer of clouds, and clouds on ellipsoids, by surfaces.
-    Clouds,
+named! {
+    /// A figure's scene.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Preset {
+        /// A gallery with a gaseous sculpture.
+        Fig3 = "fig-3",
+        /// Surface-defined fog over a chess board.
+        Fig4 = "fig-4",
+        /// The gallery, self-shadowed by the table.
+        Fig5 = "fig-5",
+        /// Steam that rises from a glass, glasses in front of, around and behind it.
+        Fig6 = "fig-6",
+        /// Volume fog that rolls over a chess board.
+        Fig7 = "fig-7",
+        /// Steam and one glass, for the shadowing variants.
+        Fig8 = "fig-8",
+        /// A solid (hypertexture) volume on a pedestal.
+        Solid = "solid",
+        /// A layer of clouds, and clouds on ellipsoids, by surfaces.
+        Clouds = "clouds",
+    }
 }
 
 /// A scene with its numbers.
@@ -48,32 +51,6 @@ pub struct Scene {
 }
 
 impl Preset {
-    /// In the paper's order, then ours.
-    pub const ALL: [Preset; 8] = [
-        Preset::Fig3,
-        Preset::Fig4,
-        Preset::Fig5,
-        Preset::Fig6,
-        Preset::Fig7,
-        Preset::Fig8,
-        Preset::Solid,
-        Preset::Clouds,
-    ];
-
-    /// The name that the command line and the record know it by.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Preset::Fig3 => "fig-3",
-            Preset::Fig4 => "fig-4",
-            Preset::Fig5 => "fig-5",
-            Preset::Fig6 => "fig-6",
-            Preset::Fig7 => "fig-7",
-            Preset::Fig8 => "fig-8",
-            Preset::Solid => "solid",
-            Preset::Clouds => "clouds",
-        }
-    }
-
     /// The frames of the paper's sequence.
     pub fn frames(self) -> Vec<u32> {
         match self {
