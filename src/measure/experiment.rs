@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::error::Error;
 use super::limits;
@@ -13,6 +14,7 @@ use super::shard::Shard;
 use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Row, Swept};
 use crate::file::{check_writable, write};
+use crate::gpu::Instance;
 use crate::image::{self, Raster, Rgba8};
 use crate::report::plot::PlotError;
 use crate::report::record::Run;
@@ -134,14 +136,16 @@ pub struct Doubts {
     of_machine: RefCell<Vec<String>>,
     /// Of pictures.
     drawn: Drawn,
+    /// Of the validation layer, where a machine was opened.
+    instance: RefCell<Option<Arc<Instance>>>,
 }
 
 impl<S: Study> Context<'_, S> {
     /// Runs an experiment once its options and files are checked.
     ///
     /// # Errors
-    /// [`Error::Input`] for an option that it does not heed, [`Error::Output`] for a file that cannot be written, and
-    /// what the experiment answers.
+    /// [`Error::Input`] for an option that it does not heed, [`Error::Output`] for a file that cannot be written, what the
+    /// experiment answers, and a message of the validation layer.
     pub fn run(&mut self, experiment: &Experiment<S>) -> Result<(), Error> {
         self.refuse(experiment)?;
         check_writable(&self.json_file())?;
@@ -152,7 +156,9 @@ impl<S: Study> Context<'_, S> {
         self.say_warnings()?;
         match ended {
             Err(Error::Shared) => Ok(()),
-            result => result,
+            // Whatever an experiment has drawn, the validation layer must have had nothing to say of it.
+            Ok(()) => self.doubts.instance.borrow().as_ref().map_or(Ok(()), |instance| Ok(instance.check_messages()?)),
+            failed => failed,
         }
     }
 
@@ -217,6 +223,7 @@ impl<S: Study> Context<'_, S> {
     pub fn open(&self) -> Result<Machine, Error> {
         let mut machine = Machine::open(&self.machine, S::NEEDS)?;
         machine.drawn = self.doubts.drawn.clone();
+        self.doubts.instance.replace(Some(machine.device.instance().clone()));
         self.console.say(&format!("device: {}", machine.description()));
         Ok(machine)
     }

@@ -68,7 +68,6 @@ impl PaperTable {
             &plots,
             &[],
         )?;
-        machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
 

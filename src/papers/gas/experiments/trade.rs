@@ -83,7 +83,6 @@ impl Trade {
         };
         context.keep_warnings(swept.rows);
         context.publish_plotted(&machine, &table, chart.to_svg())?;
-        machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
 

@@ -187,7 +187,7 @@ fn draw(context: &mut Context<'_>) -> Result<(), Error> {
             Drawn::Texture(texture) => context.drawing(&suffix, &texture)?,
         }
     }
-    machine.check_validation().map_err(Error::from).map(drop)
+    Ok(())
 }
 
 fn results(context: &mut Context<'_>) -> Result<(), Error> {
@@ -203,7 +203,6 @@ fn results(context: &mut Context<'_>) -> Result<(), Error> {
     let plot = |run| results::plot(run).map(|svg| (".svg".to_owned(), svg));
     let plots = runs.iter().map(plot).collect::<Result<Vec<_>, _>>()?;
     context.publish_runs(&machine, runs, table, &plots, &[])?;
-    machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
 
@@ -219,7 +218,6 @@ fn readbacks(context: &mut Context<'_>) -> Result<(), Error> {
     let plot = table.bars("ms", &["gpu ms", "host ms"]).map_err(Error::from)?;
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
     context.publish_runs(&machine, runs, String::new(), &[(".svg".to_owned(), plot)], &[("stages", table)])?;
-    machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
 
@@ -237,7 +235,6 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     }
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
     context.publish_runs(&machine, runs, String::new(), &plots, &[("exponents", table)])?;
-    machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
 
@@ -245,8 +242,7 @@ fn surfaces(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
     let table = surface::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
-    context.publish_table(&machine, &table)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_table(&machine, &table)
 }
 
 fn flows(context: &mut Context<'_>) -> Result<(), Error> {
@@ -261,8 +257,7 @@ fn flows(context: &mut Context<'_>) -> Result<(), Error> {
     context.save(&context.file("-area.svg"), area.as_bytes())?;
     let effusion = table.lines("time s", "cubic metres per second", &["effusion m3/s"])?;
     context.save(&context.file("-effusion.svg"), effusion.as_bytes())?;
-    context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_plotted(&machine, &table, table.lines("time s", "metres", &flow::LENGTHS))
 }
 
 fn stabilities(context: &mut Context<'_>) -> Result<(), Error> {
@@ -282,7 +277,6 @@ fn stabilities(context: &mut Context<'_>) -> Result<(), Error> {
     let compressions = table.lines("time s", "% of the density at rest", &stability::COMPRESSIONS)?;
     context.save(&context.file("-compression.svg"), compressions.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres per second", &stability::SPEEDS))?;
-    machine.check_validation()?;
     match ended {
         Err(Error::Interrupted) | Ok(()) => Ok(()),
         Err(error) => Err(error),
@@ -295,8 +289,7 @@ fn coolings(context: &mut Context<'_>) -> Result<(), Error> {
     let mut machine = context.open()?;
     let frames = context.measure.frames.unwrap_or(flow::FRAMES).max(1);
     let table = cooling::table(&mut machine, &context.setup, frames)?;
-    context.publish_table(&machine, &table)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_table(&machine, &table)
 }
 
 fn radiances(context: &mut Context<'_>) -> Result<(), Error> {
@@ -304,8 +297,7 @@ fn radiances(context: &mut Context<'_>) -> Result<(), Error> {
     radiance::check(&context.setup)?;
     let mut machine = context.open()?;
     let table = radiance::table(&mut machine, &context.setup)?;
-    context.publish_table(&machine, &table)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_table(&machine, &table)
 }
 
 fn shadings(context: &mut Context<'_>) -> Result<(), Error> {
@@ -319,16 +311,14 @@ fn normals_of(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
     let table = normals::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
-    context.publish_table(&machine, &table)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_table(&machine, &table)
 }
 
 fn gaps_between(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
     let table = gaps::table(&mut machine, &context.setup, context.options.frame.unwrap_or(0))?;
-    context.publish_table(&machine, &table)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_table(&machine, &table)
 }
 
 fn cullings(context: &mut Context<'_>) -> Result<(), Error> {
@@ -348,7 +338,6 @@ fn measured(
     let table = table(&mut machine, &swept.rows)?;
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
     context.publish_runs(&machine, runs, String::new(), &[], &[table])?;
-    machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
 
@@ -356,16 +345,16 @@ fn motions(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
     let table = motion::table(&mut machine, &context.setup, context.options.frame.unwrap_or(motion::FRAME))?;
-    context.publish_plotted(&machine, &table, table.lines("later s", "correlation", &["correlation"]))?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    context.publish_plotted(&machine, &table, table.lines("later s", "correlation", &["correlation"]))
 }
 
 fn strip_of(context: &mut Context<'_>) -> Result<(), Error> {
     context.setup.check()?;
     let mut machine = context.open()?;
-    let sheet = contact_sheet::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(contact_sheet::LAST_FRAME))?;
+    let sheet =
+        contact_sheet::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(contact_sheet::LAST_FRAME))?;
     context.picture(".png", &sheet)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    Ok(())
 }
 
 /// Checks every point's input before the first is measured.

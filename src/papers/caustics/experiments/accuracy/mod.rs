@@ -128,7 +128,6 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     for (suffix, svg) in plots(&rows)? {
         context.save(&context.file(&suffix), svg.as_bytes())?;
     }
-    machine.check_validation()?;
     match ended {
         Err(Error::Interrupted) | Ok(()) => Ok(()),
         Err(error) => Err(error),
