@@ -21,7 +21,7 @@ pub enum Error {
     Plot(#[from] PlotError),
     #[error("{0}")]
     Input(String),
-    /// What was followed broke a law that it is held against.
+    /// A law is broken by a simulation that is held against it.
     #[error("{0}")]
     Law(String),
     #[error("interrupted before anything was measured")]

@@ -164,7 +164,7 @@ impl Alternatives {
 }
 
 impl Parameters {
-    /// What alternatives differ in, in the record.
+    /// The methods as the record has them.
     pub(super) fn alternative_config(&self) -> Map<String, Json> {
         entries([
             ("lists", self.lists.json()),

@@ -33,6 +33,7 @@ pub(super) struct State {
     pub(super) places: Vec<DVec3>,
     /// Metres per second.
     pub(super) velocities: Vec<DVec3>,
+    /// Temperatures.
     pub(super) kelvin: Vec<f64>,
 }
 
@@ -52,11 +53,13 @@ pub(super) fn state(machine: &Machine, animate: &Animate) -> Result<State, Error
     })
 }
 
-/// What is seen of the lava.
+/// Extent and heat of the lava.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Observed {
+    /// Along x.
     pub(super) front_m: f64,
     area_m2: f64,
+    /// Over the space's floor.
     pub(super) highest_m: f64,
     mean_k: f64,
     greatest_k: f64,

@@ -59,7 +59,7 @@ struct Found {
     mean_m_s: f64,
     /// Over the density at rest.
     densest: f64,
-    /// What particles are denser than at rest, in the mean of all.
+    /// Excess of the particles' density over that at rest, in the mean of all.
     denser: f64,
     /// Kinetic and potential, above that at rest in the space's lowest place.
     energy_j_kg: f64,
@@ -138,7 +138,7 @@ impl Laws {
         Ok(found)
     }
 
-    /// What is wrong with a frame after another.
+    /// Fails by the first law that a frame breaks after another.
     fn hold(&self, before: &Found, now: &Found) -> Result<(), String> {
         let Found { fastest_m_s, densest, energy_j_kg, mean_k, .. } = *now;
         if fastest_m_s > self.fastest_m_s {
