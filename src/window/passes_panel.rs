@@ -221,12 +221,12 @@ fn show_pass(ui: &mut Ui, face: &mut Interface, index: usize, pass: &PassInfo) {
         ui.heading(&pass.name);
         ui.weak(format!("{} {}", pass.section, pass.kind));
     });
-    let mut facts = vec![("reads", pass.reads.join(", ")), ("writes", pass.writes.join(", "))];
-    facts.push(("shaders", pass.shaders.join(", ")));
-    facts.push(("compiler", pass.compiler.clone().unwrap_or_default()));
-    facts.push(("blend", pass.blend.join(", ")));
-    facts.push(("depth", pass.depth.clone().unwrap_or_default()));
-    for (name, text) in facts.into_iter().filter(|(_, text)| !text.is_empty()) {
+    let mut rows = vec![("reads", pass.reads.join(", ")), ("writes", pass.writes.join(", "))];
+    rows.push(("shaders", pass.shaders.join(", ")));
+    rows.push(("compiler", pass.compiler.clone().unwrap_or_default()));
+    rows.push(("blend", pass.blend.join(", ")));
+    rows.push(("depth", pass.depth.clone().unwrap_or_default()));
+    for (name, text) in rows.into_iter().filter(|(_, text)| !text.is_empty()) {
         ui.horizontal_wrapped(|ui| {
             ui.weak(name);
             ui.label(text);

@@ -142,9 +142,7 @@ impl Draw {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.indices_indirect();
-        })
+        frame.graphics(&self.pass, |draw| draw.indices_indirect())
     }
 }
 

@@ -105,15 +105,9 @@ impl DrawFire {
             volume.record(frame)?;
         }
         self.steps.iter().try_for_each(|&(ref step, [vertices, instances])| {
-            frame.graphics(step, |draw| {
-                draw.instances(vertices, instances);
-            })
+            frame.graphics(step, |draw| draw.instances(vertices, instances))
         })?;
-        self.over.iter().try_for_each(|over| {
-            frame.graphics(over, |draw| {
-                draw.vertices(3);
-            })
-        })
+        self.over.iter().try_for_each(|over| frame.graphics(over, |draw| draw.vertices(3)))
     }
 }
 

@@ -55,8 +55,6 @@ impl DrawGround {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.vertices(4);
-        })
+        frame.graphics(&self.pass, |draw| draw.vertices(4))
     }
 }

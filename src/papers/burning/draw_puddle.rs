@@ -50,9 +50,7 @@ impl DrawPuddle {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, newest: usize) -> Result<(), Error> {
-        frame.graphics(&self.passes[newest], |draw| {
-            draw.indices(self.index_count);
-        })
+        frame.graphics(&self.passes[newest], |draw| draw.indices(self.index_count))
     }
 }
 

@@ -32,8 +32,6 @@ impl DrawWire {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.vertices(self.vertices);
-        })
+        frame.graphics(&self.pass, |draw| draw.vertices(self.vertices))
     }
 }

@@ -94,7 +94,7 @@ impl Band {
     /// Those of Vulkan.
     pub fn dispatch(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
         frame.compute(pass, |dispatch| {
-            dispatch.constants(&self.constants()).threads(self.width, self.end_row - self.first_row, 1);
+            dispatch.constants(&self.constants()).threads(self.width, self.end_row - self.first_row, 1)
         })
     }
 

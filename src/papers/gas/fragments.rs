@@ -73,7 +73,7 @@ impl Fragments {
         self.passes.iter().try_for_each(|&(ref pass, first_triangle, triangle_count, vertices_a_triangle)| {
             frame.graphics(pass, |draw| {
                 draw.constants(&band.constants_of_piece(first_triangle, triangle_count))
-                    .vertices(triangle_count.saturating_mul(vertices_a_triangle));
+                    .vertices(triangle_count.saturating_mul(vertices_a_triangle))
             })
         })
     }

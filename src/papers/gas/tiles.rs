@@ -178,23 +178,13 @@ impl Tiles {
         for piece in &self.pieces {
             let constants = band.constants_of_piece(piece.first_triangle, piece.triangle_count);
             let (x, y) = band.tiles(TILE);
-            frame.compute(&self.empty, |dispatch| {
-                dispatch.constants(&constants).threads(x, y, 1);
-            })?;
+            frame.compute(&self.empty, |dispatch| dispatch.constants(&constants).threads(x, y, 1))?;
             let (x, y) = rows(piece.triangle_count, TRIANGLES_A_ROW);
-            frame.compute(&piece.count, |dispatch| {
-                dispatch.constants(&constants).threads(x, y, 1);
-            })?;
-            frame.compute(&self.sum, |dispatch| {
-                dispatch.constants(&constants).threads(1, 1, 1);
-            })?;
-            frame.compute(&piece.fill, |dispatch| {
-                dispatch.constants(&constants).threads(x, y, 1);
-            })?;
+            frame.compute(&piece.count, |dispatch| dispatch.constants(&constants).threads(x, y, 1))?;
+            frame.compute(&self.sum, |dispatch| dispatch.constants(&constants).threads(1, 1, 1))?;
+            frame.compute(&piece.fill, |dispatch| dispatch.constants(&constants).threads(x, y, 1))?;
             let (x, y) = rows(self.chunks, CHUNKS_A_ROW);
-            frame.compute(&piece.pixels, |dispatch| {
-                dispatch.constants(&constants).threads(x * CHUNK, y, 1);
-            })?;
+            frame.compute(&piece.pixels, |dispatch| dispatch.constants(&constants).threads(x * CHUNK, y, 1))?;
             band.dispatch_piece(constants, calls, frame, &piece.fragments)?;
         }
         Ok(())

@@ -38,8 +38,6 @@ impl BasePass {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.vertices(3))
     }
 }

@@ -139,11 +139,7 @@ impl Levels {
                 before,
                 after,
             };
-            recorder.run(Mode::Plain, |frame| {
-                frame.graphics(&pass, |draw| {
-                    draw.constants(&constants).vertices(3);
-                })
-            })?;
+            recorder.run(Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.constants(&constants).vertices(3)))?;
             copy_rectangle(device, &level, &target, self.shape.origin(shift), (width, height))?;
         }
         Ok(())

@@ -36,8 +36,6 @@ impl ObjectDepth {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
         self.light.write(0, bytemuck::bytes_of(&view.light))?;
-        frame.graphics(&self.pass, |draw| {
-            draw.vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.vertices(3))
     }
 }

@@ -75,8 +75,6 @@ impl ObjectMesh {
     /// Errors of the Vulkan layer.
     pub fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, view: &SceneView) -> Result<(), Error> {
         let constants = ObjectConstants { to_clip: view.to_clip.as_mat4().to_cols_array() };
-        frame.graphics(pass, |draw| {
-            draw.constants(&constants).indices(self.0.index_count);
-        })
+        frame.graphics(pass, |draw| draw.constants(&constants).indices(self.0.index_count))
     }
 }

@@ -173,11 +173,7 @@ impl Builder<'_> {
             is_float: map.is_float.into(),
             is_first: is_first.into(),
         };
-        recorder.run(Mode::Plain, |frame| {
-            frame.graphics(&pass, |draw| {
-                draw.constants(&constants).vertices(3);
-            })
-        })?;
+        recorder.run(Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.constants(&constants).vertices(3)))?;
         Ok(view)
     }
 }

@@ -70,9 +70,7 @@ impl Show {
         self.depths.write(0, bytemuck::cast_slice(&depths))?;
         self.normals.write(0, bytemuck::cast_slice(normals))?;
         self.colors.write(0, bytemuck::cast_slice(colors))?;
-        frame.graphics(&self.pass, |draw| {
-            draw.constants(&self.size).vertices(3);
-        })
+        frame.graphics(&self.pass, |draw| draw.constants(&self.size).vertices(3))
     }
 
     /// The processor's depth and normal.

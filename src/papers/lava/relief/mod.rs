@@ -120,14 +120,10 @@ impl Relief {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.compute(&self.surface_motion, |dispatch| {
-            dispatch.constants(&self.flow).threads(self.motion.width(), self.motion.height(), 1);
+            dispatch.constants(&self.flow).threads(self.motion.width(), self.motion.height(), 1)
         })?;
         let (columns, rows) = (self.normal_height.width(), self.normal_height.height());
-        frame.compute(&self.crust_relief, |dispatch| {
-            dispatch.constants(&self.flow).threads(columns, rows, 1);
-        })?;
-        frame.compute(&self.crust_normals, |dispatch| {
-            dispatch.constants(&self.sides).threads(columns, rows, 1);
-        })
+        frame.compute(&self.crust_relief, |dispatch| dispatch.constants(&self.flow).threads(columns, rows, 1))?;
+        frame.compute(&self.crust_normals, |dispatch| dispatch.constants(&self.sides).threads(columns, rows, 1))
     }
 }

@@ -307,14 +307,10 @@ impl Sph {
         // The start has all of them.
         if let Some(inflow) = self.inflow.get(from).filter(|_| out > before) {
             let constants = InflowConstants { first: before, count: out - before, width: constants.width };
-            frame.compute(inflow, |dispatch| {
-                dispatch.constants(&constants).elements(constants.count);
-            })?;
+            frame.compute(inflow, |dispatch| dispatch.constants(&constants).elements(constants.count))?;
         }
         let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants| {
-            frame.compute(pass, |dispatch| {
-                dispatch.constants(constants).elements(particles);
-            })
+            frame.compute(pass, |dispatch| dispatch.constants(constants).elements(particles))
         };
         self.sort.record(frame, from, out)?;
         run(frame, &self.forces[from], &constants)?;

@@ -56,7 +56,7 @@ impl SurfaceTemperature {
         let Layings { share, .. } = sph.rock.layings(steps.saturating_sub(1));
         let constants = FlowConstants { share, ..self.constants };
         frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&constants).threads(self.temperatures.width(), self.temperatures.height(), 1);
+            dispatch.constants(&constants).threads(self.temperatures.width(), self.temperatures.height(), 1)
         })
     }
 }
