@@ -221,11 +221,14 @@ fn show_pass(ui: &mut Ui, face: &mut Interface, index: usize, pass: &PassInfo) {
         ui.heading(&pass.name);
         ui.weak(format!("{} {}", pass.section, pass.kind));
     });
-    let mut rows = vec![("reads", pass.reads.join(", ")), ("writes", pass.writes.join(", "))];
-    rows.push(("shaders", pass.shaders.join(", ")));
-    rows.push(("compiler", pass.compiler.clone().unwrap_or_default()));
-    rows.push(("blend", pass.blend.join(", ")));
-    rows.push(("depth", pass.depth.clone().unwrap_or_default()));
+    let rows = [
+        ("reads", pass.reads.join(", ")),
+        ("writes", pass.writes.join(", ")),
+        ("shaders", pass.shaders.join(", ")),
+        ("compiler", pass.compiler.clone().unwrap_or_default()),
+        ("blend", pass.blend.join(", ")),
+        ("depth", pass.depth.clone().unwrap_or_default()),
+    ];
     for (name, text) in rows.into_iter().filter(|(_, text)| !text.is_empty()) {
         ui.horizontal_wrapped(|ui| {
             ui.weak(name);
