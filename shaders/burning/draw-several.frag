@@ -22,5 +22,5 @@ void main() {
     if (own.grain > 0.0) {
         pattern = wood(rest_position);
     }
-    shaded = shone(vec3(pattern), own.albedo, own.charring, color.a * own.embers);
+    shaded = shone(vec3(pattern), own.albedo, own.charring, glow_here() * own.embers);
 }

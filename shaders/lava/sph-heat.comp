@@ -66,13 +66,18 @@ float face_of(float kelvin) {
     return face;
 }
 
+// As the step begins.
+float kelvin_of(uint particle) {
+    return pushed.list[particle].w;
+}
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
     vec3 place_m = began_m(at);
-    float kelvin = pushed.list[at].w;
+    float kelvin = kelvin_of(at);
     float conducted = 0.0;
     vec3 gradient = vec3(0.0);
     for (int z = -1; z <= 1; z++) {
@@ -82,7 +87,7 @@ void main() {
             for (uint i = stretch.x; i < end; i++) {
                 vec3 way = apart(place_m - began_m(i)) / flow.support_m;
                 float weight = slope(length(way));
-                conducted -= weight * (pushed.list[i].w - kelvin);
+                conducted -= weight * (kelvin_of(i) - kelvin);
                 gradient += weight * way;
             }
         }
