@@ -8,7 +8,7 @@ use ash::vk;
 use super::context::Context;
 use crate::gpu::transfer::{read_buffer, upload};
 use crate::gpu::{Buffer, Error, ShaderLibrary};
-use crate::host_block;
+use crate::{host_block, named};
 
 host_block! {
     /// The state of a pixel, as `progress.glsl` describes it.
@@ -33,29 +33,20 @@ const MOST_CALLS: u32 = 4096;
 /// Growth of the dispatches of a pass that lacks some.
 const GROWTH: u32 = 4;
 
-/// The passes that carry work on, as `progress.glsl` numbers them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Carried {
-    Sort,
-    Volume,
-    LightAttenuation,
-    Resolve,
+named! {
+    /// The passes that carry work on, as `progress.glsl` numbers them.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Carried {
+        Sort = "sort",
+        Volume = "volume",
+        LightAttenuation = "light-attenuation",
+        Resolve = "resolve",
+    }
 }
 
 impl Carried {
-    const ALL: [Carried; 4] = [Carried::Sort, Carried::Volume, Carried::LightAttenuation, Carried::Resolve];
-
-    fn name(self) -> &'static str {
-        match self {
-            Carried::Sort => "sort",
-            Carried::Volume => "volume",
-            Carried::LightAttenuation => "light-attenuation",
-            Carried::Resolve => "resolve",
-        }
-    }
-
     /// Advice in messages that makes less work of it.
-    fn way_out(self) -> &'static str {
+    fn remedy(self) -> &'static str {
         match self {
             Carried::Sort | Carried::Resolve => "give a larger `size` or an `object` of fewer triangles",
             Carried::Volume | Carried::LightAttenuation => "lower `steps` or `samples`, or `tau` with `march` delta",
@@ -109,7 +100,7 @@ impl Calls {
         for pass in Carried::ALL {
             let (calls, at) = (self.of(pass), pass as usize);
             let error = |problem: String| {
-                Err(Error::Pass { pass: pass.name().to_owned(), problem: format!("{problem}; {}", pass.way_out()) })
+                Err(Error::Pass { pass: pass.as_str().to_owned(), problem: format!("{problem}; {}", pass.remedy()) })
             };
             if found.stuck[at] != 0 {
                 let pixels = unfinished_pixels(shaders, progress, pass)?;

@@ -1,4 +1,4 @@
-//! Ways to the lists of fragments, by the fragments of a pixel.
+//! Methods of the lists of fragments, by the fragments of a pixel.
 
 use serde_json::json;
 
@@ -22,9 +22,9 @@ const ALL_OPACITY: f32 = 0.93;
 /// Fragments that the k-buffer keeps of a pixel.
 const NEAREST: u32 = 8;
 
-const WAYS: [Lists; 3] = [Lists::Linked, Lists::Tiles, Lists::Nearest(NEAREST)];
+const METHODS: [Lists; 3] = [Lists::Linked, Lists::Tiles, Lists::Nearest(NEAREST)];
 
-/// Measures the three ways in turn behind ever more sheets, and compares their pictures with that of linked lists.
+/// Measures the three methods in turn behind ever more sheets, and compares their pictures with that of linked lists.
 ///
 /// # Errors
 /// [`Error::Parameter`], [`Error::Scene`], [`Error::Gpu`], [`Error::Image`], [`Error::Output`].
@@ -47,7 +47,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     let swept = context.sweep(&mut machine, &points)?;
     let table = table(&mut machine, &points, &swept.rows)?;
     let series = |(at, lists): (usize, &Lists)| {
-        let rows = swept.rows.iter().skip(at).step_by(WAYS.len());
+        let rows = swept.rows.iter().skip(at).step_by(METHODS.len());
         let points = rows.map(|row| (row.x, gpu_ms(row, &LIST_PASSES))).collect();
         Series { name: lists.text(), points, reference: false }
     };
@@ -57,7 +57,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
         y_label: "passes of the surfaces, ms".to_owned(),
         x_scale: Scale::Log,
         y_scale: Scale::Log,
-        series: WAYS.iter().enumerate().map(series).collect(),
+        series: METHODS.iter().enumerate().map(series).collect(),
     };
     context.keep_warnings(swept.rows);
     context.publish_plotted(&machine, &table, chart.to_svg())?;
@@ -67,14 +67,14 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
 fn behind_sheets(setup: &Setup, count: u32) -> Setup {
     let layer_opacity = 1.0 - (1.0 - ALL_OPACITY).powf(1.0 / count.max(1) as f32);
     let mut behind = setup.clone();
-    (behind.layers, behind.layer_opacity, behind.alternatives.lists) = (count, layer_opacity, WAYS.to_vec());
+    (behind.layers, behind.layer_opacity, behind.alternatives.lists) = (count, layer_opacity, METHODS.to_vec());
     behind
 }
 
-/// Rows stand point after point, each in the order of [`WAYS`].
+/// Rows stand point after point, each in the order of [`METHODS`].
 fn table(machine: &mut Machine, points: &[Point<Setup>], rows: &[Row]) -> Result<ResultTable, Error> {
     let mut cells = Vec::new();
-    for (point, rows) in points.iter().zip(rows.chunks(WAYS.len())) {
+    for (point, rows) in points.iter().zip(rows.chunks(METHODS.len())) {
         let scene = point.study.load()?;
         let mut linked = None;
         for (study, row) in point.study.alternatives().iter().zip(rows) {

@@ -87,10 +87,10 @@ fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title:
     let mut rows = swept.rows.as_slice();
     let mut cells = Vec::new();
     for point in &points {
-        let ways = point.study.alternatives();
-        let (of_point, others) = rows.split_at(ways.len().min(rows.len()));
+        let alternatives = point.study.alternatives();
+        let (of_point, others) = rows.split_at(alternatives.len().min(rows.len()));
         for &variant in &point.variants {
-            cells.extend(compared(&mut machine, &ways, variant, of_point)?);
+            cells.extend(compared(&mut machine, &alternatives, variant, of_point)?);
         }
         rows = others;
     }
@@ -112,22 +112,22 @@ fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title:
     swept.stopped.map_or(Ok(()), Err)
 }
 
-/// A row for each way; the first is what the others are set against.
+/// A row for each alternative; the first is what the others are set against.
 fn compared(
     machine: &mut Machine,
-    ways: &[Setup],
+    alternatives: &[Setup],
     variant: Variant,
     rows: &[Row],
 ) -> Result<Vec<Vec<serde_json::Value>>, Error> {
-    let (Some(first), Some(first_row)) = (ways.first(), rows.first()) else { return Ok(Vec::new()) };
+    let (Some(first), Some(first_row)) = (alternatives.first(), rows.first()) else { return Ok(Vec::new()) };
     let mask = gas_mask(machine, first)?;
     let (reference, all_ms) = (draw(machine, first, variant)?, gpu_ms(first_row, &GAS_PASSES));
     let mut cells = Vec::new();
-    for (way, row) in ways.iter().zip(rows) {
-        let difference = compare(&draw(machine, way, variant)?, &reference, Some(&mask))?;
-        let (parameters, ms) = (&way.parameters, gpu_ms(row, &GAS_PASSES));
+    for (alternative, row) in alternatives.iter().zip(rows) {
+        let difference = compare(&draw(machine, alternative, variant)?, &reference, Some(&mask))?;
+        let (parameters, ms) = (&alternative.parameters, gpu_ms(row, &GAS_PASSES));
         cells.push(vec![
-            json!(way.scene.as_str()),
+            json!(alternative.scene.as_str()),
             json!(row.run.variant),
             json!(parameters.density_cache),
             json!(parameters.skip_empty),

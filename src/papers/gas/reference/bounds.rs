@@ -13,7 +13,7 @@ const SAMPLES: u32 = 4;
 const ABOVE: f64 = 1.3;
 /// A bound over the greatest of all, at least: gas may lie between samples.
 const LEAST: f64 = 0.02;
-/// Least way into the next cell, of the box's longest side.
+/// Least path into the next cell, of the box's longest side.
 const NUDGE: f64 = 1e-9;
 
 /// Bounds of the extinction in the cells of a box.
@@ -48,14 +48,14 @@ impl Bounds {
         Bounds { low, high, cells }
     }
 
-    /// The way from a point through the box, as far as `distance_m`.
-    pub fn way(&self, from: DVec3, direction: DVec3, distance_m: f64) -> Way<'_> {
+    /// The path from a point through the box, as far as `distance_m`.
+    pub fn path(&self, from: DVec3, direction: DVec3, distance_m: f64) -> FreePath<'_> {
         let (a, b) = ((self.low - from) / direction, (self.high - from) / direction);
         let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-        Way { bounds: self, from, direction, at: enter.max(0.0), end: leave.min(distance_m) }
+        FreePath { bounds: self, from, direction, at: enter.max(0.0), end: leave.min(distance_m) }
     }
 
-    /// The bound in the cell of a point, and the way until a ray leaves it.
+    /// The bound in the cell of a point, and the path until a ray leaves it.
     fn cell(&self, point: DVec3, direction: DVec3) -> (f64, f64) {
         let size = (self.high - self.low) / f64::from(CELLS);
         let at = (point - self.low) / size;
@@ -78,8 +78,8 @@ fn index_of(number: u32, count: u32) -> DVec3 {
     DVec3::new(along(number), along(number / count), along(number / count / count))
 }
 
-/// A way that is filled with particles up to the bounds.
-pub(super) struct Way<'a> {
+/// A path that is filled with particles up to the bounds.
+pub(super) struct FreePath<'a> {
     bounds: &'a Bounds,
     from: DVec3,
     direction: DVec3,
@@ -87,8 +87,8 @@ pub(super) struct Way<'a> {
     end: f64,
 }
 
-impl Way<'_> {
-    /// The next particle, real or not: its distance and the bound there; nothing where the way ends.
+impl FreePath<'_> {
+    /// The next particle, real or not: its distance and the bound there; nothing where the path ends.
     pub fn particle(&mut self, mut unit: impl FnMut() -> f64) -> Option<(f64, f64)> {
         while self.at < self.end {
             let (bound, leave) = self.bounds.cell(self.from + self.direction * self.at, self.direction);

@@ -190,8 +190,8 @@ impl<'a> Paths<'a> {
     /// bounds, and where a bound is exceeded, weights make up for it (M. Galtier and others, 2013).
     fn flight(&self, from: DVec3, direction: DVec3, random: &mut Numbers) -> (Option<Place>, f64) {
         let mut weight = 1.0;
-        let mut way = self.bounds.way(from, direction, f64::INFINITY);
-        while let Some((at, bound)) = way.particle(|| random.unit()) {
+        let mut path = self.bounds.path(from, direction, f64::INFINITY);
+        while let Some((at, bound)) = path.particle(|| random.unit()) {
             let place = self.place(from + direction * at);
             let fictitious = bound - place.extinction;
             let real = place.extinction / (place.extinction + fictitious.abs());
@@ -206,8 +206,8 @@ impl<'a> Paths<'a> {
     /// The fraction of light that passes a distance, by ratio tracking.
     fn passed(&self, from: DVec3, direction: DVec3, distance_m: f64, random: &mut Numbers) -> f64 {
         let mut passed = 1.0;
-        let mut way = self.bounds.way(from, direction, distance_m);
-        while let Some((at, bound)) = way.particle(|| random.unit()) {
+        let mut path = self.bounds.path(from, direction, distance_m);
+        while let Some((at, bound)) = path.particle(|| random.unit()) {
             passed *= 1.0 - self.place(from + direction * at).extinction / bound;
         }
         passed
