@@ -30,3 +30,13 @@ pub enum Error {
     #[error("the part of the sweep is written")]
     Shared,
 }
+
+impl Error {
+    /// The end of work whose finished part is published: an interruption is none of its errors.
+    ///
+    /// # Errors
+    /// Any other.
+    pub fn unless_interrupted(self) -> Result<(), Self> {
+        if matches!(self, Error::Interrupted) { Ok(()) } else { Err(self) }
+    }
+}

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span, Work};
-use crate::measure::Paper;
+use crate::measure::{self, Paper};
 
 /// Frames and repetitions to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +95,14 @@ pub struct Watch<'a> {
     pub interrupted: &'a AtomicBool,
     /// Called after every frame with the frames done and expected.
     pub progress: &'a mut dyn FnMut(u64, u64),
+}
+
+impl Watch<'_> {
+    /// # Errors
+    /// [`Interrupted`](measure::Error::Interrupted) once the user wants no more.
+    pub fn check(&self) -> Result<(), measure::Error> {
+        if self.interrupted.load(Ordering::Relaxed) { Err(measure::Error::Interrupted) } else { Ok(()) }
+    }
 }
 
 /// Measures `papers`, interleaved.

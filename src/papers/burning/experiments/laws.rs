@@ -1,7 +1,6 @@
 //! Laws of a fire on any mesh: what nothing holds falls, and wax keeps its volume and its edges and comes to rest.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use bytemuck::Pod;
 use glam::DVec3;
@@ -92,9 +91,7 @@ impl<'a, 'b> Fire<'a, 'b> {
     }
 
     fn frame(&mut self) -> Result<(), Error> {
-        if self.watch.interrupted.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
-        }
+        self.watch.check()?;
         let Fire { machine, paper, done, .. } = self;
         machine.recorder.run(Mode::Plain, |frame| paper.record(frame, *done))?;
         self.done += 1;

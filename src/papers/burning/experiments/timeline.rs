@@ -1,7 +1,5 @@
 //! A fire followed from ignition by its simulation passes alone: an experiment finds in it the frames that it measures.
 
-use std::sync::atomic::Ordering;
-
 use super::super::setup::Setup;
 use crate::gpu::Mode;
 use crate::gpu::transfer::read_buffer;
@@ -64,9 +62,7 @@ pub fn follow(
     // Ticks since the last vertex began to burn: after as many as it has levels all is over.
     let mut over = 0;
     loop {
-        if watch.interrupted.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
-        }
+        watch.check()?;
         machine.recorder.run(Mode::Plain, |frame| (0..step).try_for_each(|_| paper.tick(frame)))?;
         let snapshot = snapshot(machine, &paper)?;
         snapshots.push(snapshot);

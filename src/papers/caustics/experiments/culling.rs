@@ -68,10 +68,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     let plot = table.lines("planes", "frame, ms", &["frame ms"])?;
     context.save(&context.file(".svg"), plot.as_bytes())?;
     context.publish_tables(&machine, &table, &more)?;
-    match ended {
-        Err(Error::Interrupted) | Ok(()) => Ok(()),
-        Err(error) => Err(error),
-    }
+    ended.or_else(Error::unless_interrupted)
 }
 
 fn table(rows: Vec<Vec<Value>>) -> ResultTable {

@@ -1,7 +1,5 @@
 //! Tables without times: the rows of one mesh and count of planes after the other, under a progress bar. What is done is kept.
 
-use std::sync::atomic::Ordering;
-
 use serde_json::Value;
 
 use super::super::named_mesh::NamedMesh;
@@ -50,9 +48,7 @@ pub fn publish(
             let mut setup = Setup { meshes: vec![mesh.source.clone()], ..context.setup.clone() };
             let scene = setup.load()?;
             counts.iter().try_for_each(|&planes| {
-                if watch.interrupted.load(Ordering::Relaxed) {
-                    return Err(Error::Interrupted);
-                }
+                watch.check()?;
                 setup.parameters.planes = planes;
                 setup.parameters.validate()?;
                 table.rows.extend(rows_of(machine, Point { mesh, planes, setup: &setup, scene: &scene })?);
@@ -67,8 +63,5 @@ pub fn publish(
         return ended.and(Err(Error::Interrupted));
     }
     context.publish_plotted(machine, &table, plot(&table))?;
-    match ended {
-        Err(Error::Interrupted) | Ok(()) => Ok(()),
-        Err(error) => Err(error),
-    }
+    ended.or_else(Error::unless_interrupted)
 }

@@ -1,7 +1,5 @@
 //! Every variant against paths on which light is scattered any number of times.
 
-use std::sync::atomic::Ordering;
-
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -103,9 +101,7 @@ impl<'a> Truth<'a> {
         let all = Paths::new(&own, own.scene_frame(0));
         let mut pixels = Vec::new();
         for row in 0..own.height {
-            if watch.interrupted.load(Ordering::Relaxed) {
-                return Err(Error::Interrupted);
-            }
+            watch.check()?;
             let traced = all.row(row, paths).ok_or_else(|| {
                 let message = "`tau`: light is scattered more than";
                 Error::Input(format!("{message} {MOST_SCATTERINGS} times on some path; lower `tau` or `albedo`"))

@@ -277,10 +277,7 @@ fn stabilities(context: &mut Context<'_>) -> Result<(), Error> {
     let compressions = table.lines("time s", "% of the density at rest", &stability::COMPRESSIONS)?;
     context.save(&context.file("-compression.svg"), compressions.as_bytes())?;
     context.publish_plotted(&machine, &table, table.lines("time s", "metres per second", &stability::SPEEDS))?;
-    match ended {
-        Err(Error::Interrupted) | Ok(()) => Ok(()),
-        Err(error) => Err(error),
-    }
+    ended.or_else(Error::unless_interrupted)
 }
 
 fn coolings(context: &mut Context<'_>) -> Result<(), Error> {

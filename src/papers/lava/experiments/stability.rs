@@ -1,8 +1,6 @@
 //! Stability of the fluid over many steps (chapter 9, "Improved particle simulation"): its laws, held at every frame, and a row
 //! of what was found now and then.
 
-use std::sync::atomic::Ordering;
-
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
@@ -219,9 +217,7 @@ pub fn follow(
     let every = frames.div_ceil(ROWS).max(1);
     let mut before: Option<Found> = None;
     for frame in 1..=frames {
-        if watch.interrupted.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
-        }
+        watch.check()?;
         machine.recorder.run(Mode::Plain, |frame| animate.record(frame))?;
         let Some(sph) = animate.sph() else { break };
         sph.check(&machine.device)?;

@@ -128,10 +128,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     for (suffix, svg) in plots(&rows)? {
         context.save(&context.file(&suffix), svg.as_bytes())?;
     }
-    match ended {
-        Err(Error::Interrupted) | Ok(()) => Ok(()),
-        Err(error) => Err(error),
-    }
+    ended.or_else(Error::unless_interrupted)
 }
 
 /// Sides of maps, the greatest last, which the others divide.
@@ -235,9 +232,7 @@ fn measure_trial(
             }
             done += 1;
             (watch.progress)(done, expected);
-            if watch.interrupted.load(Ordering::Relaxed) {
-                return Err(Error::Interrupted);
-            }
+            watch.check()?;
         }
     }
 
@@ -283,9 +278,7 @@ fn measure_trial(
     let truth = truth.transpose()?.flatten();
     let mut rows = Vec::new();
     for (index, (verdict, setting)) in verdicts.into_iter().zip(&trial.settings).enumerate() {
-        if watch.interrupted.load(Ordering::Relaxed) {
-            return Err(Error::Interrupted);
-        }
+        watch.check()?;
         let seen = truth.as_ref().map(|truth| truth.difference(machine, &mut papers[index])).transpose()?;
         let seen = seen.map_or([f64::NAN; 2], |seen| [seen.mean, seen.p99]);
         done += 1;
