@@ -43,14 +43,14 @@ fn draws_beyond_what_is_bound_are_refused() {
             message(run(device, Mode::Plain, |frame| frame.graphics(pass, |draw| body(draw))))
         };
         let beyond = "up to 4, and the bound buffer holds 3";
-        assert_eq!(refuse(&plain, &|d| _ = d.vertices(4)), format!("pass plain: draws vertices {beyond}"));
-        assert_eq!(refuse(&plain, &|d| _ = d.vertices_from(2, 2)), format!("pass plain: draws vertices {beyond}"));
-        assert!(refuse(&plain, &|d| _ = d.vertices_from(u32::MAX, u32::MAX)).contains("up to 8589934590"));
-        assert_eq!(refuse(&indexed, &|d| _ = d.indices(4)), format!("pass indexed: draws indices {beyond}"));
-        assert_eq!(refuse(&instanced, &|d| _ = d.instances(3, 4)), format!("pass instanced: draws instances {beyond}"));
+        assert_eq!(refuse(&plain, &|d| d.vertices(4)), format!("pass plain: draws vertices {beyond}"));
+        assert_eq!(refuse(&plain, &|d| d.vertices_from(2, 2)), format!("pass plain: draws vertices {beyond}"));
+        assert!(refuse(&plain, &|d| d.vertices_from(u32::MAX, u32::MAX)).contains("up to 8589934590"));
+        assert_eq!(refuse(&indexed, &|d| d.indices(4)), format!("pass indexed: draws indices {beyond}"));
+        assert_eq!(refuse(&instanced, &|d| d.instances(3, 4)), format!("pass instanced: draws instances {beyond}"));
         let unbound = "pass plain: draws indices, and no index buffer is bound";
-        assert_eq!(refuse(&plain, &|d| _ = d.indices(3)), unbound);
-        assert_eq!(refuse(&plain, &|d| _ = d.indices_indirect()), "pass plain: it has no indirect buffer");
+        assert_eq!(refuse(&plain, &|d| d.indices(3)), unbound);
+        assert_eq!(refuse(&plain, &|d| d.indices_indirect()), "pass plain: it has no indirect buffer");
         assert_eq!(refuse(&plain, &|d| _ = d.counting(true)), "pass plain: it has no counting pipeline");
         // All that is bound may be drawn, and rebinding takes the bounds along.
         let sample = run(device, Mode::Plain, |frame| {
@@ -64,7 +64,7 @@ fn draws_beyond_what_is_bound_are_refused() {
         });
         assert_eq!(sample.unwrap().passes[0].calls, 3);
         let fewer = plain.rebind().vertices(&vertices(device, 2)).build(&library).unwrap();
-        assert!(refuse(&fewer, &|d| _ = d.vertices(3)).contains("up to 3, and the bound buffer holds 2"));
+        assert!(refuse(&fewer, &|d| d.vertices(3)).contains("up to 3, and the bound buffer holds 2"));
     });
 }
 
@@ -81,13 +81,13 @@ fn constants_are_those_declared_and_are_set_first() {
         let draw = |pass: &Pass, body: &dyn Fn(&mut Draw<'_>)| {
             message(run(device, Mode::Plain, |frame| frame.graphics(pass, |draw| body(draw))))
         };
-        let wrong = draw(&fill, &|d| _ = d.constants(&Range { value_count: 1 }).vertices(3));
+        let wrong = draw(&fill, &|d| d.constants(&Range { value_count: 1 }).vertices(3));
         assert!(wrong.starts_with("pass fill: its constants are Paint, and ") && wrong.contains("Range"), "{wrong}");
         let unset = "its constants are not set before it draws or dispatches";
-        assert_eq!(draw(&fill, &|d| _ = d.vertices(3)), format!("pass fill: {unset}"));
-        let unknown = draw(&plain, &|d| _ = d.constants(&Range { value_count: 1 }).vertices(3));
+        assert_eq!(draw(&fill, &|d| d.vertices(3)), format!("pass fill: {unset}"));
+        let unknown = draw(&plain, &|d| d.constants(&Range { value_count: 1 }).vertices(3));
         assert_eq!(unknown, "pass plain: it has no constants, and some are given");
-        let dispatch = run(device, Mode::Plain, |frame| frame.compute(&step, |d| _ = d.threads(64, 1, 1)));
+        let dispatch = run(device, Mode::Plain, |frame| frame.compute(&step, |d| d.threads(64, 1, 1)));
         assert_eq!(message(dispatch), format!("pass advance: {unset}"));
     });
 }
