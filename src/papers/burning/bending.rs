@@ -130,7 +130,7 @@ impl Bending {
         let cuts = table("cuts", bytemuck::cast_slice::<Cut, u8>(cut_list))?;
         let holds = table("holds", bytemuck::cast_slice::<Hold, u8>(holds))?;
         let loads = table("section-loads", bytemuck::cast_slice(&vec![Load::none(); section_count]))?;
-        let strengths = empty("joint-strengths", 4 * joint_list.len())?;
+        let strengths = table("joint-strengths", &vec![0; 4 * joint_list.len()])?;
         let bends = table("section-bends", bytemuck::cast_slice(&vec![Bend::NONE; section_count]))?;
         let angles = table("joint-angles", &vec![0; 4 * joint_list.len()])?;
         let hinges = empty("hinges", size_of::<Hinge>() * section_count)?;
