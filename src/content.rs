@@ -45,7 +45,11 @@ pub fn folder_sha256(folder: &Path) -> io::Result<String> {
     Ok(sha256(files.iter().map(digest).collect::<io::Result<String>>()?.as_bytes()))
 }
 
-fn files_below(folder: &Path) -> io::Result<Vec<PathBuf>> {
+/// All files below a folder, in no order.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn files_below(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;

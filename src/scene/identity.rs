@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::formats::gltf_buffer::percent_decoded;
 use super::{height_map, voxels, world_file};
@@ -26,6 +27,31 @@ pub fn source_sha256(path: &Path) -> io::Result<String> {
     }
     let digests = companions.iter().map(|companion| content::file_sha256(companion)).collect::<io::Result<Vec<_>>>()?;
     Ok(content::sha256(format!("{own}{}", digests.concat()).as_bytes()))
+}
+
+/// The files of a source, their sizes and when they were last written to: another where one of them was changed.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SourceState(Vec<(PathBuf, u64, SystemTime)>);
+
+impl SourceState {
+    /// Of what [`source_sha256`] reads of `path`.
+    ///
+    /// # Errors
+    /// A file or folder that is not there.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        let files = if path.is_dir() {
+            let mut files = content::files_below(path)?;
+            files.sort();
+            files
+        } else {
+            [path.to_owned()].into_iter().chain(companions(path)).collect()
+        };
+        let state = |path: PathBuf| {
+            let metadata = std::fs::metadata(&path)?;
+            Ok((path, metadata.len(), metadata.modified()?))
+        };
+        files.into_iter().map(state).collect::<io::Result<_>>().map(SourceState)
+    }
 }
 
 fn companions(path: &Path) -> Vec<PathBuf> {
@@ -96,5 +122,23 @@ mod tests {
         assert_ne!(source_sha256(&volume).unwrap(), first);
         write("c.obj", "mesh");
         assert_eq!(source_sha256(&folder.path().join("c.obj")).unwrap(), content::sha256(b"mesh"));
+    }
+
+    #[test]
+    fn a_state_is_another_after_any_of_the_files_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let raster = folder.path().join("b.bil");
+        for name in ["b.bil", "b.hdr"] {
+            std::fs::write(folder.path().join(name), "one").unwrap();
+        }
+        let [alone, whole] = [&*raster, folder.path()].map(|path| SourceState::of(path).unwrap());
+        assert_eq!(
+            [&*raster, folder.path()].map(|path| SourceState::of(path).unwrap()),
+            [alone.clone(), whole.clone()]
+        );
+        std::fs::write(folder.path().join("b.hdr"), "three").unwrap();
+        assert_ne!(SourceState::of(&raster).unwrap(), alone);
+        assert_ne!(SourceState::of(folder.path()).unwrap(), whole);
+        assert!(SourceState::of(&folder.path().join("nowhere")).is_err());
     }
 }

@@ -37,7 +37,7 @@ pub use error::{Asset, Error, Fault, Place};
 pub use height_map::{
     Coordinates, Geographic, HeightMap, HeightMapSource, RowSource, Rows, Samples, Suspect, Voids, volcano,
 };
-pub use identity::source_sha256;
+pub use identity::{SourceState, source_sha256};
 pub use light::Light;
 pub use loading::MeshOptions;
 pub use mesh::Mesh;

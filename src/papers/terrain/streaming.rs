@@ -13,7 +13,7 @@ use crate::content;
 use crate::measure::Error;
 use crate::measure::parameter::Value;
 use crate::scene::loading::Conditions;
-use crate::scene::{HeightMap, HeightMapSource, RowSource, Voids, source_sha256};
+use crate::scene::{HeightMap, HeightMapSource, RowSource, SourceState, Voids, source_sha256};
 
 /// Loads all but the samples of the maps.
 ///
@@ -44,7 +44,12 @@ fn open(setup: &Setup, source: &HeightMapSource) -> Result<TileFile, Error> {
     let name = PathBuf::from(source.to_string());
     let folder = Conditions::tiles_folder();
     let interpolation = setup.parameters.interpolation;
-    TileFile::open(folder.as_deref(), &name, interpolation, &|| key(setup, source), || rows(setup, source))
+    let state = || match source.path() {
+        None => Ok(SourceState::default()),
+        Some(path) => SourceState::of(path).map_err(|error| unreadable(path, error)),
+    };
+    let key = || key(setup, source);
+    TileFile::open(folder.as_deref(), &name, interpolation, key, state, || rows(setup, source))
 }
 
 /// All that the tiles of a map are made of.

@@ -19,7 +19,7 @@ use super::pyramid::Shape;
 use super::tile_writer::write_tiles;
 use crate::file;
 use crate::measure::Error;
-use crate::scene::{HeightMap, RowSource, Samples, cache};
+use crate::scene::{HeightMap, RowSource, Samples, SourceState, cache};
 
 /// Most bytes of all files of tiles together, but for one that is larger alone.
 const MOST_BYTES: u64 = 64 << 30;
@@ -67,25 +67,27 @@ fn numbers(map: &HeightMap, interpolation: Interpolation) -> PageTable {
 
 impl TileFile {
     /// The file in `folder` that `key` names, made of the rows of `source` where it is not there or damaged; without a folder a
-    /// temporary one. `name` is the map's, for messages.
+    /// temporary one, which needs no key. `name` is the map's, for messages, and `state` that of its files.
     ///
     /// # Errors
-    /// Of the source; [`Error::Output`] of a folder without room; [`Error::Input`] where `key` is another when the file is made:
+    /// Of the source; [`Error::Output`] of a folder without room; [`Error::Input`] where `state` is another when the file is made:
     /// the map was changed meanwhile.
     pub fn open(
         folder: Option<&Path>,
         name: &Path,
         interpolation: Interpolation,
-        key: &dyn Fn() -> Result<String, Error>,
+        key: impl FnOnce() -> Result<String, Error>,
+        state: impl Fn() -> Result<SourceState, Error>,
         source: impl FnOnce() -> Result<RowSource, Error>,
     ) -> Result<Self, Error> {
+        // Before the key: what it tells of is read after this.
+        let state_before = state()?;
         let Some(folder) = folder else {
             let failed = |error: io::Error| {
                 let reason = "name a folder with room in TMPDIR";
                 Error::Input(format!("`map` {}: its tiles need a temporary file: {error}; {reason}", name.display()))
             };
             let mut temporary = file::temporary().map_err(failed)?;
-            let key_before = key()?;
             let source = source()?;
             let mut wrong = None;
             let mut out = BufWriter::new(temporary.as_file_mut());
@@ -93,13 +95,12 @@ impl TileFile {
             drop(out);
             wrong.map_or(Ok(()), Err)?;
             made.map_err(failed)?;
-            check_same(name, &key_before, &key()?)?;
+            check_same(name, &state_before, &state()?)?;
             let opened = temporary.reopen().ok().and_then(|file| read_head(file, temporary.path(), interpolation));
             let opened = opened.ok_or_else(|| failed(io::ErrorKind::UnexpectedEof.into()))?;
             return Ok(TileFile { _temporary: Some(temporary), ..opened });
         };
-        let key_before = key()?;
-        let path = folder.join(format!("{key_before}.{ENDING}"));
+        let path = folder.join(format!("{}.{ENDING}", key()?));
         if let Ok(file) = File::open(&path) {
             if let Some(opened) = read_head(file, &path, interpolation) {
                 cache::touch(&path);
@@ -115,7 +116,7 @@ impl TileFile {
         let made = file::write_unsynced(&path, |out| make(out, name, interpolation, source, &mut wrong));
         wrong.map_or(Ok(()), Err)?;
         made?;
-        check_same(name, &key_before, &key()?).inspect_err(|_| {
+        check_same(name, &state_before, &state()?).inspect_err(|_| {
             let _ = fs::remove_file(&path);
         })?;
         let opened = File::open(&path).ok().and_then(|file| read_head(file, &path, interpolation));
@@ -156,7 +157,7 @@ impl TileFile {
     }
 }
 
-fn check_same(name: &Path, before: &str, after: &str) -> Result<(), Error> {
+fn check_same(name: &Path, before: &SourceState, after: &SourceState) -> Result<(), Error> {
     if before == after {
         return Ok(());
     }
@@ -250,7 +251,8 @@ mod tests {
 
     fn open(folder: Option<&Path>, map: &HeightMap, interpolation: Interpolation) -> Result<TileFile, Error> {
         let key = || Ok("key".to_owned());
-        TileFile::open(folder, Path::new("land"), interpolation, &key, || {
+        let state = || Ok(SourceState::default());
+        TileFile::open(folder, Path::new("land"), interpolation, key, state, || {
             RowSource::of(map.clone()).map_err(Error::from)
         })
     }
@@ -260,7 +262,9 @@ mod tests {
     }
 
     fn reopen(folder: &Path) -> Result<TileFile, Error> {
-        TileFile::open(Some(folder), Path::new("land"), Interpolation::Bilinear, &|| Ok("key".to_owned()), refuse)
+        let key = || Ok("key".to_owned());
+        let state = || Ok(SourceState::default());
+        TileFile::open(Some(folder), Path::new("land"), Interpolation::Bilinear, key, state, refuse)
     }
 
     /// Every tile of a file is the one that lies in memory.
@@ -351,22 +355,25 @@ mod tests {
         }
     }
 
+    /// Of the files' sizes and times alone: their contents, which name the file, are read once.
     #[test]
     fn a_map_that_changes_while_it_is_read_is_refused() {
         for at in [true, false] {
             let folder = tempfile::tempdir().unwrap();
+            let land = tempfile::NamedTempFile::new().unwrap();
             let [map, _] = maps();
-            let asked = std::cell::Cell::new(0);
-            let key = || {
-                asked.set(asked.get() + 1);
-                Ok(format!("contents {}", asked.get()))
-            };
+            let key = || Ok("key".to_owned());
+            let state = || Ok(SourceState::of(land.path()).unwrap());
             let folder_of = at.then_some(folder.path());
-            let source = || RowSource::of(map).map_err(Error::from);
-            let error =
-                TileFile::open(folder_of, Path::new("land"), Interpolation::Bilinear, &key, source).unwrap_err();
-            assert_eq!(error.to_string(), "`map` land: it was changed while it was read; start again");
+            let source = || {
+                fs::write(land.path(), "more").unwrap();
+                RowSource::of(map.clone()).map_err(Error::from)
+            };
+            let open = || TileFile::open(folder_of, Path::new("land"), Interpolation::Bilinear, key, state, source);
+            assert_eq!(open().unwrap_err().to_string(), "`map` land: it was changed while it was read; start again");
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+            let same = || RowSource::of(map.clone()).map_err(Error::from);
+            TileFile::open(folder_of, Path::new("land"), Interpolation::Bilinear, key, state, same).unwrap();
         }
     }
 }
