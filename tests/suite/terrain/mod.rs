@@ -12,6 +12,7 @@ mod oracle;
 mod pictures;
 mod pyramids;
 mod ridges;
+mod rough;
 mod scenes;
 mod silhouette;
 mod tiles;

@@ -18,7 +18,7 @@ const BASES: [Base; 3] =
 const INTERPOLATIONS: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
 
 /// A telephoto lens over a place, `above_m` over the surface there, that looks at another on the surface.
-fn lens(world: &World, from: DVec2, above_m: f64, to: DVec2, fov_rad: f32) -> Camera {
+pub fn lens(world: &World, from: DVec2, above_m: f64, to: DVec2, fov_rad: f32) -> Camera {
     Camera {
         eye: world.point(from, world.height_m(from) + above_m).as_vec3(),
         target: world.point(to, 0.8 * world.height_m(to)).as_vec3(),

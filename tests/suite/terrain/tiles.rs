@@ -10,7 +10,7 @@ use fumarole::papers::terrain::{
     Base, Hit, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, TileFile, Variant, View,
 };
 use fumarole::scene::random::Random;
-use fumarole::scene::{Camera, RowSource, Samples};
+use fumarole::scene::{Camera, RowSource, Samples, SourceState};
 use glam::Vec3;
 
 use super::drawing::{Drawing, Painter, differing};
@@ -116,7 +116,8 @@ fn tiles_from_files_show_the_whole_map() {
             maps[1].placement.center_m.x = 25_000.0;
             let file = |input: &MapInput| {
                 let key = || Ok("key".to_owned());
-                let tiles = TileFile::open(None, Path::new("map"), interpolation, &key, || {
+                let state = || Ok(SourceState::default());
+                let tiles = TileFile::open(None, Path::new("map"), interpolation, key, state, || {
                     Ok(RowSource::of(input.map.as_ref().clone())?)
                 });
                 Arc::new(tiles.unwrap())
