@@ -16,7 +16,7 @@ use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
-    /// What is there of a section (`burning/sections.glsl`).
+    /// Weight and foot of a section (`burning/sections.glsl`).
     pub struct Load {
         /// Of its vertices.
         pub weight: u32,
@@ -48,7 +48,7 @@ host_block! {
         pub section_count: u32,
         /// Their joints.
         pub joint_count: u32,
-        /// What the joints consist of.
+        /// Cuts that the joints consist of.
         pub cut_count: u32,
         /// Of a section from the foot's side to the other, diagonals.
         pub width: f32,

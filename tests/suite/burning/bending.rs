@@ -1,4 +1,4 @@
-//! What hangs by little: it comes down before it breaks, and nothing else moves.
+//! Parts that hang by little come down before they break, and nothing else moves.
 
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;

@@ -91,7 +91,7 @@ pub struct Sections {
     pub joints: Vec<Joint>,
     /// Joints of each section, one list after the other.
     pub around: Vec<u32>,
-    /// What the joints consist of.
+    /// Cuts that the joints consist of.
     pub cuts: Vec<Cut>,
     /// Of each vertex.
     pub holds: Vec<Hold>,

@@ -1,5 +1,6 @@
-//! What hangs by little (ours, not the dissertation's): the joints that bear all that lies beyond them, by taking each away
-//! in turn, and how far they turn, in `f64` from the curvature of a thin tube. The sections are taken as they are.
+//! Bending of parts that hang by little (ours, not the dissertation's): the joints that bear all that lies beyond them, by
+//! taking each away in turn, and how far they turn, in `f64` from the curvature of a thin tube. The sections are taken as
+//! they are.
 
 use glam::{DQuat, DVec3};
 
@@ -38,13 +39,13 @@ pub struct Bearing {
     pub reach: f64,
 }
 
-/// What is known of an object of sections in a tick.
+/// State of an object of sections in a tick.
 pub struct Bending<'a> {
     /// Its sections.
     pub divided: &'a Sections,
-    /// What is there of each.
+    /// Of each.
     pub loads: &'a [Load],
-    /// What is left of each joint.
+    /// Left of each joint.
     pub strengths: &'a [u32],
     /// Of each section before the tick.
     pub bends: &'a [Bent],
