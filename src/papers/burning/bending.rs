@@ -216,9 +216,7 @@ impl Bending {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: u64) -> Result<(), Error> {
         let mut run = |step: &Pass, threads: u32| {
-            frame.compute(step, |dispatch| {
-                dispatch.constants(&self.sizes).elements(threads);
-            })
+            frame.compute(step, |dispatch| dispatch.constants(&self.sizes).elements(threads))
         };
         if tick.is_multiple_of(SEARCH_TICKS) {
             let [clear, sum] = &self.sum[(tick % 2) as usize];
@@ -228,9 +226,7 @@ impl Bending {
         let [bend, turn, follow] = &self.bend;
         run(bend, 1)?;
         run(turn, self.sizes.section_count)?;
-        frame.compute(follow, |dispatch| {
-            dispatch.groups_indirect();
-        })
+        frame.compute(follow, |dispatch| dispatch.groups_indirect())
     }
 }
 
