@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::ParameterError;
+use crate::measure::experiment::json_text;
 use crate::measure::study::Study;
 use crate::papers::terrain::{Collider, Contact, Inputs, Surface, void_warnings};
 
@@ -110,19 +110,18 @@ pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<(Vec<Collision>, Vec<St
     Ok((collisions, void_warnings(scene.maps.iter().map(|input| &*input.map)), seconds))
 }
 
-/// Record of `collide`, as it is written.
-#[derive(serde::Serialize)]
-pub struct Record<'a> {
-    /// In the order of the bodies.
-    #[serde(serialize_with = "one_by_one")]
-    pub collisions: &'a [Collision],
-    /// Of the maps.
-    pub warnings: &'a [String],
-}
-
-/// A document of a million bodies is never there as a whole.
-fn one_by_one<S: Serializer>(collisions: &&[Collision], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(collisions.iter().map(Collision::json))
+/// Record of `collide` as JSON: the collisions in the order of the bodies, and warnings of the maps. All cores make it, and of a
+/// million bodies no document is there but the text.
+///
+/// # Errors
+/// As [`json_text`].
+pub fn record(collisions: &[Collision], warnings: &[String]) -> Result<String, Error> {
+    /// The distance of a collision from the margin.
+    const INSIDE: &str = "\n    ";
+    let text = |collision: &Collision| Ok(json_text(&collision.json())?.trim_end().replace('\n', INSIDE));
+    let collisions: Vec<String> = collisions.par_iter().map(text).collect::<Result<_, Error>>()?;
+    let (collisions, warnings) = (collisions.join(&format!(",{INSIDE}")), json!(warnings));
+    Ok(format!("{{\n  \"collisions\": [{INSIDE}{collisions}\n  ],\n  \"warnings\": {warnings}\n}}\n"))
 }
 
 impl Collision {
@@ -168,5 +167,28 @@ impl std::fmt::Display for Collision {
         }?;
         let [x, y, z] = rounded(m.normal);
         writeln!(formatter, ", normal {x:.6},{y:.6},{z:.6}, {} steps", m.steps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text that is put together is that of the whole document.
+    #[test]
+    fn a_record_is_that_of_the_whole_document() {
+        let setup = Setup { resolution: 16, ..Setup::default() };
+        let bodies = [
+            Body::from(&[0.0, 9000.0, 0.0, 100.0, -1.0, 0.0]),
+            Body::from(&[0.0, 9000.0, 0.0, 1.0, 9000.0, 0.0]),
+            Body::from(&[0.0, 0.0, 0.0, 5.0]),
+        ];
+        let (collisions, _, _) = collide(&setup, &bodies).unwrap();
+        assert!(collisions[0].contact.is_some() && collisions[1].contact.is_none());
+        for warnings in [vec![], vec!["one".to_owned(), "two\n\"quoted\"".to_owned()]] {
+            let listed: Vec<Value> = collisions.iter().map(Collision::json).collect();
+            let whole = json_text(&json!({"collisions": listed, "warnings": warnings})).unwrap();
+            assert_eq!(record(&collisions, &warnings).unwrap(), whole);
+        }
     }
 }

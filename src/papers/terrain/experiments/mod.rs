@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use self::collisions::{Body, Collision, Record, collide};
+use self::collisions::{Body, Collision, collide, record};
 use self::table::{Axis, Outcome};
 use super::setup::Setup;
 use super::{Variant, View};
@@ -285,7 +285,7 @@ fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     warnings.iter().for_each(|warning| context.console.say(&format!("warning: {warning}")));
     let started = Instant::now();
     if json.is_some() {
-        let record = experiment::json_text(&Record { collisions: &collisions, warnings: &warnings })?;
+        let record = record(&collisions, &warnings)?;
         match file {
             Some(path) => write(path, record.as_bytes())?,
             None => context.console.print(&record)?,
