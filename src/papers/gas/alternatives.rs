@@ -195,6 +195,8 @@ impl Parameters {
 }
 
 fn check_once<T: Value + PartialEq>(name: &str, methods: &[T]) -> Result<(), Error> {
-    let Some((_, twice)) = methods.iter().enumerate().find(|(at, method)| methods[..*at].contains(method)) else { return Ok(()) };
+    let Some((_, twice)) = methods.iter().enumerate().find(|(at, method)| methods[..*at].contains(method)) else {
+        return Ok(());
+    };
     Err(Error::Input(format!("`{name}`: {} stands there twice; name each once", twice.text())))
 }

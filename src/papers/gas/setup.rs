@@ -408,8 +408,9 @@ impl Study for Setup {
         let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
         let numbers =
             Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
-        let alternatives =
-            Alternatives::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.alternatives, |s| &mut s.alternatives));
+        let alternatives = Alternatives::declared()
+            .into_iter()
+            .map(|p| p.inside(|s: &Setup| &s.alternatives, |s| &mut s.alternatives));
         objects
             .into_iter()
             .chain(alternatives)

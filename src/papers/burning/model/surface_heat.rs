@@ -193,7 +193,8 @@ fn length(from: DVec3, to: DVec3, lean: DVec3) -> f64 {
 fn across(ends: [DVec3; 2], distances: [f64; 2], to: DVec3, lean: DVec3) -> f64 {
     let edge = ends[1] - ends[0];
     let edge_length = edge.length();
-    let by = |share: f64| distances[0] + share * (distances[1] - distances[0]) + length(ends[0] + share * edge, to, lean);
+    let by =
+        |share: f64| distances[0] + share * (distances[1] - distances[0]) + length(ends[0] + share * edge, to, lean);
     // By quarters too: where distances that rise are shorter, no formula has the least.
     let least = [0.0, 0.25, 0.5, 0.75].map(by).into_iter().fold(f64::INFINITY, f64::min);
     let slope = (distances[1] - distances[0]) / edge_length;
@@ -228,7 +229,10 @@ mod tests {
         let distances = distances((&positions, &triangles), &[], &[source], DVec3::ZERO);
         for (distance, place) in distances.iter().zip(&positions) {
             let straight = f64::from(place.distance(source));
-            assert!(*distance >= 0.999 * straight && *distance < straight + 1.1 / 40.0, "{place}: {distance}, {straight}");
+            assert!(
+                *distance >= 0.999 * straight && *distance < straight + 1.1 / 40.0,
+                "{place}: {distance}, {straight}"
+            );
         }
     }
 
