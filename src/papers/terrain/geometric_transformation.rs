@@ -52,12 +52,15 @@ fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
 /// The pass, on the host.
 pub struct GeometricTransformation {
     info: Arc<PassInfo>,
+    footprint: f32,
 }
 
 impl GeometricTransformation {
-    pub fn new() -> Self {
+    /// Rays end at texels as large as `footprint` pixels.
+    pub fn new(footprint: f32) -> Self {
         let (reads, writes) = (["camera", "placement"], ["land", "light"]);
-        GeometricTransformation { info: PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &writes) }
+        let info = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &writes);
+        GeometricTransformation { info, footprint }
     }
 
     /// Writes the view's blocks where the device reads them as well, if it holds the maps.
@@ -72,7 +75,8 @@ impl GeometricTransformation {
         device_scene: Option<&DeviceScene>,
     ) -> Result<SceneView, Error> {
         frame.host(&self.info, || {
-            let view = SceneView::new(scene, parameters);
+            let mut view = SceneView::new(scene, parameters);
+            view.terrains.iter_mut().for_each(|terrain| terrain.pixel_nodes *= self.footprint);
             device_scene.map_or(Ok(()), |device_scene| device_scene.write(&view))?;
             Ok(view)
         })

@@ -1,7 +1,7 @@
 //! The geometric transformation (eq. 10 and 11): a map over its base surface, as rays see it. The base alone is transformed;
 //! heights never are.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
@@ -175,6 +175,22 @@ impl Ground {
         }
     }
 
+    /// A line on map `number` of `count` if it goes more than once round its base, or beyond a pole.
+    pub fn winding_warning(&self, number: usize, count: usize) -> Option<String> {
+        let curve = self.curve.as_ref().filter(|_| !self.closes)?;
+        let [columns, rows] = [self.shape.width, self.shape.height].map(|nodes| f64::from(nodes - 1));
+        let turns = columns / (TAU * curve.steps.x.abs());
+        let from_the_equator = curve.latitude_rad.abs() + rows / 2.0 / curve.steps.y.abs();
+        let problem = if turns > 1.0 + WHOLE_TURN {
+            format!("goes {turns:.1} times round its base: what lies more than half a turn from its middle is not seen")
+        } else if !curve.is_cylinder && from_the_equator > PI / 2.0 + WHOLE_TURN {
+            "goes beyond a pole of its base, where its land folds over itself".to_owned()
+        } else {
+            return None;
+        };
+        Some(format!("`map` {number} of {count} {problem}; take a larger `base` or a smaller `spacing`"))
+    }
+
     fn set_axes(&mut self) {
         let to_world = self.to_frame.inverse();
         self.axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
@@ -198,5 +214,36 @@ impl Ground {
             [self.lowest.min(self.base), self.highest].map(|height| self.point(fraction * last, height))
         });
         Extent::of(points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A map of 61 x 31 samples whose columns go once round is in order, a wider one and one beyond a pole are told of.
+    #[test]
+    fn maps_that_go_round_their_base_more_than_once_are_told_of() {
+        let warning = |base: Base, spacing_m: [f64; 2]| {
+            let map = HeightMap::new(61, 31, Samples::Float(vec![1.0; 61 * 31])).unwrap();
+            let map = map.with_spacing_m(spacing_m.into()).unwrap();
+            let placement = Placement::default();
+            Ground::new(&map, placement, base, Origin::default(), 0.0).winding_warning(2, 3)
+        };
+        let whole_m = 600.0 * TAU / 60.0;
+        let round = Base::Cylinder { radius_m: 600.0 };
+        for [across, along] in [[whole_m, 1e5], [TAU * 600.0 / 61.0, 10.0], [1.0, 1.0]] {
+            assert_eq!(warning(round, [across, along]), None, "{across}");
+            assert_eq!(warning(Base::Plane, [1e3 * across, along]), None);
+        }
+        let twice = warning(round, [2.0 * whole_m, 1.0]).unwrap();
+        assert!(
+            twice.starts_with("`map` 2 of 3 goes 2.0 times round its base") && twice.contains("`spacing`"),
+            "{twice}"
+        );
+        let ball = Base::Ellipsoid { equatorial_m: 600.0, polar_m: 600.0 };
+        assert_eq!(warning(ball, [whole_m, 600.0 * PI / 30.0]), None);
+        assert!(warning(ball, [whole_m, 600.0 * PI / 28.0]).unwrap().contains("beyond a pole"));
+        assert!(warning(ball, [1.1 * whole_m, 1.0]).unwrap().contains("1.1 times round"));
     }
 }

@@ -222,7 +222,7 @@ impl Terrain {
         let mut terrain = Terrain {
             parameters: parameters.clone(),
             scene,
-            geometric_transformation: GeometricTransformation::new(),
+            geometric_transformation: GeometricTransformation::new(traversal.footprint(parameters.interpolation)),
             device_scene,
             technique,
             objects: None,
@@ -458,7 +458,10 @@ impl Paper for Terrain {
                 counts.missing
             )
         });
-        void_warnings(self.scene.maps.iter().map(|map| &**map)).into_iter().chain(haze).chain(lacking).collect()
+        let count = self.scene.grounds.len();
+        let winding = (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));
+        let voids = void_warnings(self.scene.maps.iter().map(|map| &**map));
+        voids.into_iter().chain(winding).chain(haze).chain(lacking).collect()
     }
 
     fn camera(&self) -> Option<Camera> {

@@ -289,8 +289,8 @@ impl Parameters {
             Parameter::new("base", field!(Parameters.base))
                 .help(
                     "Base surface that heights are added to: plane, earth (WGS84), ellipsoid:EQUATORIAL,POLAR or \
-                     cylinder:RADIUS, semi-axes and radius in metres, 1 to 100000000; the cylinder's axis runs north and \
-                     south",
+                     cylinder:RADIUS, semi-axes (within a factor of 4 of each other) and radius in metres, 1 to 100000000; \
+                     the cylinder's axis runs north and south",
                 )
                 .section("eq. 5, 6")
                 .cost(Cost::Pipelines),
@@ -345,13 +345,13 @@ impl Parameters {
             Base::Plane => {}
             Base::Cylinder { radius_m } => {
                 let range = "its radius must be 1 to 100000000 metres";
-                ParameterError::check((1.0..=1.0e8).contains(&radius_m), "base", radius_m, range)?;
+                ParameterError::check((1.0..=1.0e8).contains(&radius_m), "base", self.base.text(), range)?;
             }
             Base::Ellipsoid { equatorial_m, polar_m } => {
                 let is_good = [equatorial_m, polar_m].iter().all(|axis| (1.0..=1.0e8).contains(axis))
                     && (0.25..=4.0).contains(&(polar_m / equatorial_m));
                 let range = "its semi-axes must be 1 to 100000000 metres and within a factor of 4 of each other";
-                ParameterError::check(is_good, "base", format!("{equatorial_m},{polar_m}"), range)?;
+                ParameterError::check(is_good, "base", self.base.text(), range)?;
             }
         }
         let [azimuth, elevation] = (SUN.get)(self);

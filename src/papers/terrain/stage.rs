@@ -44,6 +44,12 @@ impl Traversal {
             Traversal::Cells => Cover::Cells(interpolation),
         }
     }
+
+    /// The part of a pixel that texels are as large as at which a ray ends. One that bounds what bicubic cells read has the heights of
+    /// three nodes more along each side: as large as a pixel it would lift silhouettes by more than that.
+    pub fn footprint(self, interpolation: Interpolation) -> f32 {
+        if self.cover(interpolation) == Cover::Cells(Interpolation::Bicubic) { 0.5 } else { 1.0 }
+    }
 }
 
 /// All that passes are built with.
