@@ -1,8 +1,8 @@
 //! "Detection of spatial collisions" (section 1): segments and spheres against the terrain, through the same altitude map as
 //! the rays.
 //!
-//! A segment is a ray that ends, followed to the surface of the data: exact to a thousandth of a cell, as `lod` exact is. A
-//! sphere is measured in double precision: exact to a millionth of a cell. Both hold on every base and interpolation.
+//! A segment is a ray that ends, followed to the surface of the data: exact to a thousandth of a cell, as `lod` exact is; where its
+//! ends are too far away for single precision, the piece around what it meets is followed again. A sphere is measured in double precision: exact to a millionth of a cell. Both hold on every base and interpolation.
 
 use glam::{DVec3, Vec3};
 
@@ -18,6 +18,13 @@ use super::pyramid::{Cover, Texel};
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{Inputs, Scene};
 use super::solid::Solid;
+
+/// The rounding of a place in single precision, as a fraction of its farthest coordinate, and the piece of a segment that is
+/// certain to hold what it meets.
+const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
+const PIECE: f64 = 4.0 * ROUNDING;
+/// The error of a contact that is not worth another look, as a fraction of a cell.
+const HAIR: f64 = 1e-3;
 
 /// The first contact of a body with the ground: of a moving point where it meets it, of a sphere the ground's nearest point
 /// to its centre.
@@ -59,6 +66,51 @@ impl Collider {
 
     /// The first contact on the way from `a` to `b`, world, metres.
     pub fn segment(&self, a: DVec3, b: DVec3) -> Option<Contact> {
+        let farthest_m = a.abs().max(b.abs()).max_element();
+        let cell_m =
+            self.scene.grounds.iter().map(|ground| ground.spacing_m.min_element()).fold(f64::INFINITY, f64::min);
+        if farthest_m * ROUNDING <= HAIR * cell_m {
+            return self.traced(a, b);
+        }
+        if let Some([near, far]) = self.over_maps(a, b)
+            && let Some(contact) = self.piece(a, b, near, far)
+        {
+            return Some(contact);
+        }
+        let found = self.traced(a, b)?;
+        let (t, reach) = (found.t?, farthest_m * PIECE / a.distance(b));
+        let again = self.piece(a, b, (t - reach).max(0.0), (t + reach).min(1.0));
+        again.filter(|again| t > 0.0 && again.surface != Surface::Inside).or(Some(found))
+    }
+
+    /// The piece of a segment in the box around maps on a plane; none where it does not come there, or meets the base before.
+    fn over_maps(&self, a: DVec3, b: DVec3) -> Option<[f64; 2]> {
+        if self.scene.grounds.iter().any(|ground| ground.curve.is_some()) {
+            return None;
+        }
+        let (low, high) = (self.scene.extent.low, self.scene.extent.high);
+        let margin = 0.3 * (high - low) + DVec3::ONE;
+        let (low, high, whole) = (low - margin, high + margin, b - a);
+        let (mut near, mut far) = (0.0_f64, 1.0_f64);
+        for axis in 0..3 {
+            if whole[axis] != 0.0 {
+                let [one, other] = [low, high].map(|side| (side[axis] - a[axis]) / whole[axis]);
+                (near, far) = (near.max(one.min(other)), far.min(one.max(other)));
+            } else if a[axis] < low[axis] || a[axis] > high[axis] {
+                return None;
+            }
+        }
+        (near < far && (near == 0.0 || a.lerp(b, near).y > 0.0)).then_some([near, far])
+    }
+
+    /// The first contact of a piece of a segment.
+    fn piece(&self, a: DVec3, b: DVec3, near: f64, far: f64) -> Option<Contact> {
+        let contact = self.traced(a.lerp(b, near), a.lerp(b, far))?;
+        let t = near + contact.t? * (far - near);
+        Some(Contact { t: Some(t), distance_m: t * a.distance(b), ..contact })
+    }
+
+    fn traced(&self, a: DVec3, b: DVec3) -> Option<Contact> {
         let rays = Rays { eye: a, corner: b - a, across: DVec3::ZERO, down: DVec3::ZERO };
         let mut hit = Hit { depth_m: 1.0, ..Hit::SKY };
         let mut normal = Vec3::Y;

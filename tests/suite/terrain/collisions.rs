@@ -72,6 +72,33 @@ fn segments_touch_where_small_steps_do() {
     assert!(met > 100, "only {met} segments meet the ground");
 }
 
+/// However far away a segment begins and ends, it meets the ground where its piece over the map does.
+#[test]
+fn long_segments_meet_what_their_pieces_meet() {
+    let maps = alone(volcano(65));
+    let cell_m = maps[0].map.spacing_m().x;
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let mut random = Random::new(4);
+    for far_m in [1e6, 1e7, 5e7] {
+        for _ in 0..60 {
+            let mut place = |y: f64| {
+                let [x, z] = [(); 2].map(|()| 10_000.0 * (f64::from(random.unit()) - 0.5));
+                DVec3::new(x, y, z)
+            };
+            let (above, below) = (place(2500.0), place(-1.0));
+            let direction = (below - above).normalize();
+            let expected = collider.segment(above, below).unwrap();
+            let (from, to) = (above - far_m * direction, below + far_m * direction);
+            let found = collider.segment(from, to).unwrap();
+            let off_m = found.point.distance(expected.point);
+            assert!(off_m < 2e-3 * cell_m, "{above} to {below} from {far_m} m: {off_m} m, {found:?}, not {expected:?}");
+            assert_eq!(found.surface, expected.surface);
+            assert!((found.distance_m - from.distance(expected.point)).abs() < 2e-3 * cell_m, "{found:?}");
+            assert!(from.lerp(to, found.t.unwrap()).distance(found.point) < 2e-3 * cell_m, "{found:?}");
+        }
+    }
+}
+
 const BASES: [Base; 3] =
     [Base::Plane, Base::Cylinder { radius_m: 900.0 }, Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 }];
 const INTERPOLATIONS: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
