@@ -364,6 +364,23 @@ fn table_4_2_measures_until_half_is_refined() {
 }
 
 #[test]
+fn a_fire_paced_by_the_clock_records_every_frame_s_share() {
+    let paced = small("experiment pace --frames 12 --frame-rate 1000 --quiet --json");
+    let document = paced.args(BALL).run().succeeded().json();
+    let rows = document["table"]["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 12);
+    let mut due = 0;
+    for row in rows {
+        let share = row["share of a tick, 64ths"].as_u64().unwrap();
+        assert!((1..=64).contains(&share), "{row}");
+        due += share;
+        assert_eq!(row["ticks"].as_u64().unwrap(), (due / 64).max(1), "{rows:?}");
+    }
+    assert!(due < 12 * 64, "no frame took a millisecond: {rows:?}");
+    burning("bench --frame-rate 30").run().misused(&["--frame-rate"]);
+}
+
+#[test]
 fn strips_are_pictures() {
     let out = folder();
     let strips = burning("experiment sequence --figures 3.2,5.1 --moments 2,30 --quiet --out .").args(SMALL);
@@ -437,6 +454,8 @@ fn an_experiment_refuses_what_it_would_not_heed() {
         ("active --flammability 5", "--flammability"),
         ("active --first-frame 5", "--first-frame"),
         ("laws --look dissertation", "--look"),
+        ("pace --time-division 2", "--time-division"),
+        ("limits --frame-rate 30", "--frame-rate"),
         ("scaling --triangles 50", "--triangles"),
         ("scaling --counts 2", "--triangles 2"),
         ("sequence --json", "--json"),

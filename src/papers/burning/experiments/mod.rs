@@ -3,6 +3,7 @@
 mod active;
 mod contact_sheets;
 mod laws;
+mod pace;
 pub mod presets;
 mod rates;
 mod refining;
@@ -35,6 +36,8 @@ pub struct Options {
     moments: Vec<u32>,
     /// Triangles of `scaling`.
     counts: Vec<u32>,
+    /// Frames a second that `pace` keeps up.
+    frame_rate: Option<f32>,
 }
 
 /// The options of the experiments.
@@ -53,6 +56,12 @@ pub fn options() -> Vec<Parameter<Options>> {
             .placeholder("N,N,..")
             .help("Triangles of scaling, comma-separated")
             .default_text("1000 to 1000000, two a decade"),
+        Parameter::new("frame-rate", field!(Options.frame_rate))
+            .range(Range::above(0.0).to(1000.0))
+            .unit("frames a second")
+            .help("Rate that pace keeps up")
+            .section("3.7.2")
+            .default_text("30"),
     ]
 }
 
@@ -109,6 +118,18 @@ pub fn all() -> Vec<Experiment<Setup>> {
                 ("preload", "this experiment measures both; leave it and `no-preload` out"),
             ],
             run: limits,
+        },
+        Experiment {
+            name: "pace",
+            help: "Section 3.7.2: a fire that slows down where frames come too slowly, with every frame's share",
+            options: &["frame-rate"],
+            refuses: &[
+                OWN_FRAMES,
+                OWN_STEP,
+                ("time-division", "this experiment divides ticks by the frame rate"),
+                ("repeat", "no fire goes by the clock twice alike"),
+            ],
+            run: paced,
         },
         Experiment {
             name: "sequence",
@@ -295,6 +316,19 @@ fn limits(context: &mut Context<'_>) -> Result<(), Error> {
     let rows = limited.rows.into_iter().chain(divided.rows).chain(loaded.rows).collect();
     let stopped = limited.stopped.or(divided.stopped).or(loaded.stopped);
     publish(context, &machine, Swept { rows, stopped }, String::new(), &[], &tables)
+}
+
+fn paced(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = named_or_shell(context)?;
+    let frames = context.measure.frames.unwrap_or(240);
+    let frame_rate = f64::from(context.options.frame_rate.unwrap_or(30.0));
+    let mut machine = context.open()?;
+    let mut table = Err(Error::Interrupted);
+    context.console.watch("burning by the clock", &mut |watch| {
+        table = pace::table(&mut machine, &setup, frame_rate, frames, watch);
+    });
+    context.publish_table(&machine, &table?)?;
+    Ok(machine.check_validation().map(drop)?)
 }
 
 fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
