@@ -90,6 +90,7 @@ fn an_arm_droops_before_it_falls() {
                     drooped = drooped.max(f64::from(vertex.position.y) - to.y);
                 }
             }
+            raised /= f64::from(weights.iter().sum::<u32>());
             assert!(raised < 1e-6, "tick {tick}: raised by {raised}");
             if tick % 10 == 0 {
                 let left =
