@@ -5,8 +5,9 @@
 // round the point, and their densities times the distance to it, are interpolated. They must be finished before: the
 // text sorts the entries by their distance from the light, which reads unfinished ones where a farther entry lies on a
 // nearer ray. Here a dispatch does all entries of one Manhattan distance, counted in entries from the cell that holds
-// the light: the four are nearer by it always. The eight entries of that cell see the light before the face and are
-// integrated directly. What lies outside the table has no density. The text lists six of the cube's eight corners, and
+// the light, along those axes alone that are the longest of some entry's ray: the four are nearer by it always. They
+// are whole planes where one axis is the longest of all rays, as under every light at infinity. The eight entries of the light's cell see it
+// before the face and are integrated directly. What lies outside the table has no density. The text lists six of the cube's eight corners, and
 // stores sums of densities that it multiplies by one step later; ours are times their own steps, which differ with the
 // ray.
 
@@ -29,9 +30,17 @@ layout(push_constant, std430) uniform Wave {
     int distance; // from the light's cell to this wave's entries
     ivec3 cell; // the light's; -1 or the last entry where it lies outside
     uint first_density; // entry of the volume's densities
-    ivec2 first_column; // of entries that this wave may have
+    ivec2 first_column; // of entries that this wave may have, along the threads' axes
+    ivec2 is_counted; // 1 where the distance is counted along the threads' axes, else 0
+    ivec3 column_axis; // of the threads' columns, a unit vector
     uint first_sum; // entry of the volume's and light's sums
+    ivec3 row_axis; // and of their rows
 } wave;
+
+int component(ivec3 of, ivec3 axis) {
+    ivec3 parts = of * axis;
+    return parts.x + parts.y + parts.z;
+}
 
 int distance_along(int entry, int cell) {
     return entry <= cell ? cell - entry : entry - cell - 1;
@@ -98,24 +107,29 @@ float sum_to_light(ivec3 entry) {
 
 void main() {
     int n = int(frame.table_size);
-    ivec2 xy = ivec2(gl_GlobalInvocationID.xy) + wave.first_column;
-    if (xy.x >= n || xy.y >= n) {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + wave.first_column;
+    if (at.x >= n || at.y >= n) {
         return;
     }
-    int along_z = wave.distance - distance_along(xy.x, wave.cell.x) - distance_along(xy.y, wave.cell.y);
-    if (along_z < 0) {
+    ivec3 swept_axis = ivec3(1) - wave.column_axis - wave.row_axis;
+    ivec3 column = wave.column_axis * at.x + wave.row_axis * at.y;
+    ivec2 distances = ivec2(distance_along(at.x, component(wave.cell, wave.column_axis)),
+        distance_along(at.y, component(wave.cell, wave.row_axis))) * wave.is_counted;
+    int along = wave.distance - distances.x - distances.y;
+    if (along < 0) {
         return;
     }
-    // Of this column two entries have the distance, one on each side of the light's cell, or one where it lies outside.
-    int before = wave.cell.z - along_z;
-    int behind = wave.cell.z + 1 + along_z;
+    // Along the third axis two entries have the distance, one on each side of the light's cell, or one where it lies outside.
+    int cell = component(wave.cell, swept_axis);
+    int before = cell - along;
+    int behind = cell + 1 + along;
     bool has_behind = behind < n;
-    int z = before >= 0 ? before : behind;
+    int place = before >= 0 ? before : behind;
     bool is_left = before >= 0 || has_behind;
     while (is_left) {
-        ivec3 entry = ivec3(xy, z);
+        ivec3 entry = column + swept_axis * place;
         shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
-        is_left = has_behind && z != behind;
-        z = behind;
+        is_left = has_behind && place != behind;
+        place = behind;
     }
 }

@@ -12,7 +12,7 @@ use crate::host_block;
 use crate::scene::Light;
 
 host_block! {
-    /// A wavefront: the entries of one Manhattan distance from the light's cell. Lengths are in entries of the table.
+    /// A wavefront: the entries of one distance from the light's cell. Lengths are in entries of the table.
     struct WaveConstants {
         /// A point light's position, or the direction towards a light at infinity.
         source: [f32; 3],
@@ -25,8 +25,13 @@ host_block! {
         first_density: u32,
         /// First column and row of entries that the wavefront may have.
         first_column: [i32; 2],
+        /// 1 where the distance is counted along columns' or rows' axis.
+        is_counted: [i32; 2],
+        /// Unit vectors along the axes of columns and of rows.
+        column_axis: [i32; 3],
         /// First entry of the volume's and light's sums.
         first_sum: u32,
+        row_axis: [i32; 3],
     }
 }
 
@@ -39,10 +44,16 @@ pub struct ShadowTable {
     size: u32,
 }
 
-/// The wavefronts that fill the table of one volume and light.
+/// The wavefronts that fill the table of one volume and light: the entries of one Manhattan distance from the light's cell,
+/// along the axes that are the longest of some entry's ray to the light. An entry follows from some that are one nearer
+/// along the longest axis of its own ray, and no farther along the others.
 struct Sweep {
     /// Of distance 0.
     first: WaveConstants,
+    /// True for the axes along which distance is counted.
+    is_counted: [bool; 3],
+    /// Axes of columns and of rows; along the third one the entries of a wavefront are found.
+    axes: [usize; 2],
     count: u32,
 }
 
@@ -77,7 +88,7 @@ impl ShadowTable {
             frame.compute(&self.pass, |dispatch| {
                 for sweep in self.sweeps.iter().filter(|s| wave < s.count) {
                     let [(x, columns), (y, rows)] =
-                        [0, 1].map(|axis| sweep.extent(axis, wave as i32, self.size as i32));
+                        sweep.axes.map(|axis| sweep.extent(axis, wave as i32, self.size as i32));
                     let constants = WaveConstants { distance: wave as i32, first_column: [x, y], ..sweep.first };
                     dispatch.constants(&constants).threads(columns, rows, 1);
                 }
@@ -102,8 +113,21 @@ impl Sweep {
             _ if along < 0.0 => -1,
             _ => (along.floor() as i32).min(last - 1),
         });
-        // The farther end of each axis, in entries from the cell.
-        let farthest: i32 = cell.iter().map(|&c| c.max(last - 1 - c)).sum();
+        // The least and the greatest length of all entries' rays along each axis; 1e-4 is far beyond rounding.
+        let lengths = source.map(|along| match is_point {
+            false => (along.abs(), along.abs()),
+            true => ((-along).max(along - last as f32).max(0.0), along.abs().max((along - last as f32).abs())),
+        });
+        let least = |axis: usize| lengths[axis].0 * (1.0 - 1e-4);
+        let is_counted = [0, 1, 2].map(|axis| lengths[axis].1 >= least((axis + 1) % 3).max(least((axis + 2) % 3)));
+        let axes = match is_counted {
+            [_, _, true] => [0, 1],
+            [_, true, _] => [0, 2],
+            _ => [1, 2],
+        };
+        let unit = |axis: usize| [0, 1, 2].map(|other| i32::from(other == axis));
+        let of_counted = (0..3).filter(|&axis| is_counted[axis]);
+        let farthest: i32 = of_counted.map(|axis| farthest_from(cell[axis], last)).sum();
         Sweep {
             first: WaveConstants {
                 source,
@@ -113,17 +137,25 @@ impl Sweep {
                 cell,
                 first_density,
                 first_column: [0; 2],
+                is_counted: axes.map(|axis| is_counted[axis].into()),
+                column_axis: unit(axes[0]),
                 first_sum,
+                row_axis: unit(axes[1]),
             },
+            is_counted,
+            axes,
             count: farthest.max(0) as u32 + 1,
         }
     }
 
     /// The first entry along an axis that a wavefront may have, and the number of those from there on.
     fn extent(&self, axis: usize, distance: i32, size: i32) -> (i32, u32) {
+        if !self.is_counted[axis] {
+            return (0, size as u32);
+        }
         let last = size - 1;
-        let farthest = |cell: i32| cell.max(last - 1 - cell);
-        let of_others: i32 = (0..3).filter(|&other| other != axis).map(|other| farthest(self.first.cell[other])).sum();
+        let others = (0..3).filter(|&other| other != axis && self.is_counted[other]);
+        let of_others: i32 = others.map(|other| farthest_from(self.first.cell[other], last)).sum();
         let nearest = (distance - of_others).max(0);
         let (low, high) = match self.first.cell[axis] {
             -1 => (nearest, distance),
@@ -135,34 +167,65 @@ impl Sweep {
     }
 }
 
+/// Distance from a cell to the farther end of its axis, in entries.
+fn farthest_from(cell: i32, last: i32) -> i32 {
+    cell.max(last - 1 - cell)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::papers::gas::parameters::default_volume;
 
+    fn point(x: f32, y: f32, z: f32) -> Light {
+        Light::Point { position: Vec3::new(x, y, z), intensity: Vec3::ONE }
+    }
+
+    fn parallel(x: f32, y: f32, z: f32) -> Light {
+        Light::Parallel { direction: Vec3::new(x, y, z), intensity: Vec3::ONE }
+    }
+
     /// The wavefronts' extents hold every entry of their distance, and those of a light beside the table are not half empty.
     #[test]
     fn extents_hold_their_entries() {
         let size = 9;
-        for position in [Vec3::new(0.3, -0.2, 0.6), Vec3::new(3.0, 0.1, -4.0), Vec3::new(2.0, 5.0, 3.0), Vec3::ONE] {
-            let light = Light::Point { position, intensity: Vec3::ONE };
+        let lights = [point(0.3, -0.2, 0.6), point(3.0, 0.1, -4.0), point(2.0, 5.0, 3.0), point(1.0, 1.0, 1.0)];
+        let sides = [parallel(1.0, 0.2, 0.0), parallel(0.1, -1.0, 0.3), parallel(0.0, 0.0, 1.0), point(0.1, 9.0, 0.2)];
+        for light in lights.into_iter().chain(sides) {
             let sweep = Sweep::new(&default_volume(), &light, size, 0, 0);
             let along = |entry: i32, cell: i32| if entry <= cell { cell - entry } else { entry - cell - 1 };
             let (mut entries, mut threads) = (0, 0);
             for wave in 0..sweep.count as i32 {
-                let [(x, columns), (y, rows)] = [0, 1].map(|axis| sweep.extent(axis, wave, size as i32));
+                let [(x, columns), (y, rows)] = sweep.axes.map(|axis| sweep.extent(axis, wave, size as i32));
                 threads += columns * rows;
                 for i in 0..(size * size * size) as i32 {
                     let entry = [i % 9, i / 9 % 9, i / 81];
-                    if (0..3).map(|axis| along(entry[axis], sweep.first.cell[axis])).sum::<i32>() == wave {
+                    let counted = (0..3).filter(|&axis| sweep.is_counted[axis]);
+                    if counted.map(|axis| along(entry[axis], sweep.first.cell[axis])).sum::<i32>() == wave {
                         entries += 1;
-                        let is_in = |entry: i32, first: i32, count: u32| (first..first + count as i32).contains(&entry);
-                        assert!(is_in(entry[0], x, columns) && is_in(entry[1], y, rows), "{position} {wave} {entry:?}");
+                        let is_in = |axis: usize, first: i32, count: u32| {
+                            (first..first + count as i32).contains(&entry[axis])
+                        };
+                        let [column, row] = sweep.axes;
+                        assert!(is_in(column, x, columns) && is_in(row, y, rows), "{light:?} {wave} {entry:?}");
                     }
                 }
             }
-            assert_eq!(entries, size * size * size, "{position}");
-            assert!(threads < 2 * entries, "{position}: {threads}");
+            assert_eq!(entries, size * size * size, "{light:?}");
+            assert!(threads < 2 * entries, "{light:?}: {threads}");
         }
+    }
+
+    /// Under a light at infinity, and under a far one along an axis, a wavefront is a plane; two axes are as many as the rays
+    /// turn between.
+    #[test]
+    fn wavefronts_are_as_few_as_the_rays_allow() {
+        let count = |light: Light| Sweep::new(&default_volume(), &light, 64, 0, 0).count;
+        assert_eq!(count(parallel(0.3, -1.0, 0.45)), 64);
+        assert_eq!(count(parallel(1.0, 0.0, 0.0)), 64);
+        assert_eq!(count(point(0.2, 0.1, -20.0)), 64);
+        assert_eq!(count(point(9.0, 0.1, 9.0)), 127);
+        assert_eq!(count(parallel(1.0, 1.0, 1.0)), 190, "of equal lengths any is the longest");
+        assert!(count(point(0.1, 0.2, 0.3)) < 190, "inside");
     }
 }
