@@ -1,11 +1,13 @@
 //! Every variant's picture on SwiftShader against that of the device of the tests, and what the papers do without its
 //! geometry stage and statistics.
 
+use std::fs;
+
 use fumarole::image::{Rgba8, read_png};
 use tempfile::TempDir;
 
 use super::{BURNING, CAUSTICS, CAUSTICS_SMART, GAS, LAVA, Paper, TERRAIN, driver_manifest};
-use crate::cli::program::{ONCE, Program, SCENE, folder, fumarole};
+use crate::cli::program::{ONCE, Program, SCENE, folder, fumarole, lava};
 
 /// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, and
 /// filters have other fractions.
@@ -73,6 +75,24 @@ fn terrain_looks_the_same() {
 }
 
 /// A driver against another: a side's environment and device are its own.
+/// The fluid with its heat and its crust, in two processes on each driver.
+#[test]
+fn a_fluid_is_the_same_to_the_bit_on_every_run() {
+    let folder = folder();
+    let moved = |program: Program| {
+        let [dump, picture] = ["positions.npy", "picture.png"].map(|name| folder.path().join(name));
+        let program = program.args("--simulation sph --rheology basalt --heat-capacity 12 --frame 8 --quiet --dump");
+        program.arg(format!("positions={}", dump.display())).arg("--image").arg(&picture).run().succeeded();
+        fs::read(&dump).unwrap()
+    };
+    let small =
+        || lava("render --size 32x24 --particles 300 --radius 0.3 --density 16x8x8 --splats 10x5 --splat-radius 0.2");
+    let of_tests = [(); 2].map(|()| moved(small().on_test_device()));
+    let of_swiftshader = [(); 2].map(|()| moved(on_swiftshader(small(), &folder)));
+    assert!(of_tests[0] == of_tests[1] && of_swiftshader[0] == of_swiftshader[1]);
+    assert!(of_tests[0].len() == of_swiftshader[0].len() && of_tests[0].len() > 300 * 16);
+}
+
 #[test]
 fn it_may_be_a_side_of_ab() {
     let folder = folder();
