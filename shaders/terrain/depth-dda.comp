@@ -10,6 +10,7 @@
 #include "terrain/interpolation.glsl"
 #include "terrain/leaf-{LOD}.glsl"
 #include "terrain/traversal-dda-{BASE}.glsl"
+#include "terrain/start-{BASE}.glsl"
 #include "terrain/depth.glsl"
 #include "terrain/tile.glsl"
 
@@ -22,5 +23,7 @@ void main() {
     if (pixel.x >= imageSize(depth).x || pixel.y >= imageSize(depth).y) {
         return;
     }
+    read_map();
+    known = start_of(pixel);
     imageStore(depth, pixel, find_hit(pixel));
 }

@@ -10,10 +10,13 @@
 #include "terrain/interpolation.glsl"
 #include "terrain/leaf-{LOD}.glsl"
 #include "terrain/traversal-dda-{BASE}.glsl"
+#include "terrain/start-{BASE}.glsl"
 #include "terrain/depth.glsl"
 
 layout(location = 0) out vec4 depth;
 
 void main() {
+    read_map();
+    known = start_of(ivec2(gl_FragCoord.xy));
     depth = find_hit(ivec2(gl_FragCoord.xy));
 }

@@ -6,9 +6,3 @@ const int WHOLE = 1 << 23;
 vec3 point_on(Subsegment subsegment, float fraction) {
     return mix(subsegment.near, subsegment.far, fraction);
 }
-
-// The smallest number of levels above the data whose texels are as large as the extent, in nodes.
-int shift_for(float extent) {
-    int exponent = ((floatBitsToInt(extent) + 0x7fffff) >> 23) - 127;
-    return clamp(exponent, 0, map.top);
-}

@@ -14,6 +14,12 @@ float highest_at(int shift, ivec2 texel) {
     return value_in(1, shift, texel);
 }
 
+// As `highest_at` and `lowest_at`, of a level that is not the data's: what is coarser is all that a walk reads before its end.
+float value_above(int layer, int shift, ivec2 texel) {
+    uint bits = texelFetch(levels, ivec3((map.spread >> shift) + texel, layer), 0).x;
+    return map.is_float ? uintBitsToFloat(bits) : float(int(bits));
+}
+
 float lowest_at(int shift, ivec2 texel) {
     return value_in(2, shift, texel);
 }

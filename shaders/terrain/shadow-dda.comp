@@ -22,5 +22,7 @@ void main() {
     if (pixel.x >= imageSize(shadow).x || pixel.y >= imageSize(shadow).y) {
         return;
     }
+    read_map();
+    known = nothing_known();
     imageStore(shadow, pixel, vec4(lit_at(pixel)));
 }

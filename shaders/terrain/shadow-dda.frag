@@ -15,5 +15,7 @@
 layout(location = 0) out float shadow;
 
 void main() {
+    read_map();
+    known = nothing_known();
     shadow = lit_at(ivec2(gl_FragCoord.xy));
 }

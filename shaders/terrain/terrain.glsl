@@ -104,6 +104,12 @@ ivec2 last_texel(int shift) {
     return map.last >> shift;
 }
 
+// The smallest number of levels above the data whose texels are as large as the extent, in nodes.
+int shift_for(float extent) {
+    int exponent = ((floatBitsToInt(extent) + 0x7fffff) >> 23) - 127;
+    return clamp(exponent, 0, map.top);
+}
+
 // The north-west corner of the cell of a level around a place in nodes, and where the place lies in it, 0 to 1. A coarser
 // level's texel stands in the middle of the nodes that it covers.
 vec4 cell_at(int shift, vec2 place) {

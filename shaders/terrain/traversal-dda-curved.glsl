@@ -2,22 +2,9 @@
 // map's frame: it is halved as section 3 has it until it lies above everything below it or is straight, and then walked. Straight
 // pieces are many cells long where cells are small beside the base.
 
+#include "terrain/cells-between.glsl"
 #include "terrain/halves.glsl"
 #include "terrain/walk.glsl"
-
-// A height above the surface between two places, by texels that bound whole cells; far below all heights where no map is.
-float highest_between(vec2 low, vec2 high, int shift) {
-    vec2 end = vec2(map.last);
-    bool is_outside = high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y;
-    ivec2 last_cell = max(map.last - 1, ivec2(0));
-    ivec2 first = clamp(ivec2(floor(low)), ivec2(0), last_cell);
-    ivec2 last = clamp(ivec2(floor(high)), ivec2(0), last_cell);
-    int least = max(shift, 1);
-    ivec2 touched = (last >> least) - (first >> least);
-    int level = max(min(least + shift_for(float(max(touched.x, touched.y))), map.top), 1);
-    float highest = highest_of(level, first >> level, last >> level);
-    return is_outside ? -NO_DEPTH : highest;
-}
 
 // The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
 Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
@@ -65,7 +52,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
                 float far_m = depth_at(ray, float(at + units) / float(WHOLE));
                 vec2 depths_m = mix(vec2(subsegment.depth_m), vec2(far_m), vec2(clip.near, clip.far));
                 Line line = Line(from, point_on(subsegment, clip.far) - from, depths_m.x, depths_m.y);
-                met = walk(line, clamp(level, 1, max(map.top, 1)), steps);
+                met = walk(line, 0.0, clamp(level, 1, max(map.top, 1)), steps);
             }
             done = met.t >= 0.0 || !met.is_certain;
             if (!done) {

@@ -8,17 +8,15 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     if (!(ray.near_m < ray.far_m)) {
         return before;
     }
-    int shift = finest_shift(ray.near_m);
-    int surface = entry_surface(ray, height_at(shift, ray.from.xy));
-    if (surface != 0) {
-        return Hit(ray.near_m, ray.from.xy, surface_code(surface, shift, 1));
-    }
     int steps = 0;
-    Met met = walk(Line(ray.from, ray.whole, ray.near_m, ray.far_m), max(map.top - 2, 1), steps);
+    float free = clamp((known.free_m - ray.near_m) / (ray.far_m - ray.near_m), 0.0, 1.0);
+    Met met = walk(Line(ray.from, ray.whole, ray.near_m, ray.far_m), free, known.level, steps);
     Hit hit = met.is_certain ? before : UNFINISHED;
     if (met.t >= 0.0) {
         float depth_m = depth_at(ray, met.t);
-        hit = Hit(depth_m, ray.from.xy + met.t * ray.whole.xy, surface_code(TERRAIN, finest_shift(depth_m), steps));
+        // A ray that begins below the surface meets a wall, or is inside the mountain.
+        int surface = met.t > 0.0 ? TERRAIN : ray.side;
+        hit = Hit(depth_m, ray.from.xy + met.t * ray.whole.xy, surface_code(surface, finest_shift(depth_m), steps));
     }
     return hit;
 }

@@ -10,9 +10,9 @@
 
 // A height above the surface over a block of cells.
 float highest_over(int level, ivec2 block) {
-    float highest = highest_at(level, block);
+    float highest = value_above(1, level, block);
 #ifdef INTERPOLATION_BICUBIC
-    highest += 9.0 / 32.0 * (highest - lowest_at(level, block));
+    highest += 9.0 / 32.0 * (highest - value_above(2, level, block));
 #endif
     return highest;
 }
@@ -43,6 +43,18 @@ ivec3 beyond(ivec2 block, int level, ivec2 forward, vec2 at_border, vec2 place, 
     return ivec3(along_x ? next.x : inside.x, along_x ? inside.y : next.y, min(level + up, map.top));
 }
 
+// The depth up to which a ray is known to be above the surface, and the level at which it is followed from there.
+struct Start {
+    float free_m;
+    int level;
+};
+
+Start nothing_known() {
+    return Start(0.0, max(map.top - 2, 1));
+}
+
+Start known; // of the ray that is traced; over a curved base not asked
+
 // Nodes along u and v, and height; the depth of its ends in metres.
 struct Line {
     vec3 from;
@@ -57,7 +69,8 @@ struct Met {
     bool is_certain;
 };
 
-Met walk(Line line, int first_level, inout int steps) {
+// `free` is how much of the line is known to be above the surface: from there on it is walked, from a block of `first_level` on.
+Met walk(Line line, float free, int first_level, inout int steps) {
     vec3 from = line.from;
     vec3 whole = line.whole;
     // A ray along the grid never comes to the borders beside it: their part of the ray is beyond its end.
@@ -67,9 +80,9 @@ Met walk(Line line, int first_level, inout int steps) {
     bool falls = whole.z < 0.0;
     float margin = terrain.rounding_height;
     ivec2 last_cell = max(map.last - 1, ivec2(0));
-    ivec2 cell = clamp(ivec2(floor(from.xy)), ivec2(0), last_cell);
+    ivec2 cell = clamp(ivec2(floor(from.xy + free * whole.xy)), ivec2(0), last_cell);
     int level = first_level;
-    float t = 0.0; // what is free of the ray
+    float t = free; // of the ray
     float end = 0.0; // of the block
     float met = -1.0;
     bool done = false;

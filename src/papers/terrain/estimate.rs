@@ -2,11 +2,12 @@
 
 use super::mesh::{BLOCK_INDICES, MESH_SIDE};
 use super::page_table::{PageTable, TILE};
-use super::parameters::{Interpolation, Lod, Parameters, Variant};
+use super::parameters::{Base, Interpolation, Lod, Parameters, Start, Variant};
 use super::pyramid::Shape;
 use super::quadtree::PATCH_SIDE;
 use super::scene::Inputs;
 use super::selection::Patch;
+use super::start::TILE_PIXELS;
 use crate::measure::estimate::Estimate;
 use crate::scene::Samples;
 
@@ -71,6 +72,12 @@ impl Parameters {
         let drape = inputs.drape.map_or(0.0, |drape| f64::from(drape.size().0) * f64::from(drape.size().1));
         let of_pixel = if is_host { 3.0 * VECTOR + 2.0 * NUMBER } else { (1.0 + targets) * VECTOR + NUMBER };
         let of_pixel = of_pixel + if is_mesh { NUMBER } else { 0.0 };
+        let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
+        let starts = if walks && self.base == Base::Plane && self.start == Start::Tiles {
+            maps * NUMBER / f64::from(TILE_PIXELS * TILE_PIXELS)
+        } else {
+            0.0
+        };
         let light = if self.shadows && !is_host { NUMBER * if maps > 1.0 { 2.0 } else { 1.0 } } else { 0.0 };
         let objects = if inputs.objects.is_empty() { 0.0 } else { NUMBER };
         let lit_objects = if shades_objects { VECTOR + NUMBER * if maps > 1.0 { 3.0 } else { 2.0 } } else { 0.0 };
@@ -92,10 +99,10 @@ impl Parameters {
                 (map, if on_device { levels } else { 0.0 } + indices),
                 ("tile-memory", pools),
                 ("drape", NUMBER * if on_device { drape } else { 0.0 }),
-                ("size", (of_pixel + light + objects + lit_objects + occlusion) * pixels),
+                ("size", (of_pixel + starts + light + objects + lit_objects + occlusion) * pixels),
                 ("object", mesh_bytes as f64 + tree),
             ],
-            passes: Some(("object", 10 + 3 * inputs.maps.len() as u64 + 2 * inputs.objects.len() as u64)),
+            passes: Some(("object", 10 + 4 * inputs.maps.len() as u64 + 2 * inputs.objects.len() as u64)),
             draws: None,
             invocations: vec![
                 ("size", rays * (10.0 + STEP * steps * surface)),

@@ -1,7 +1,7 @@
 //! `terrain`: S. I. Vyatkin's terrain from a shape texture, ray-cast without triangles.
 //!
 //! ```text
-//! geometric-transformation (host) ─► depth ─► normal (─► shadow (─► occlusion)) ─► illumination
+//! geometric-transformation (host) (─► start) ─► depth ─► normal (─► shadow (─► occlusion)) ─► illumination
 //!                                  (─► object-depth (─► object-hits ─► object-shadow ─► object-occlusion) ─► objects)
 //! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow (─► occlusion)) ─► illumination (...)   (mesh)
 //! geometric-transformation (host) ─► base ─► select (host) ─► mesh-lod ─► normal ...                           (mesh-lod)
@@ -56,6 +56,7 @@ mod shadow;
 mod show;
 mod solid;
 mod stage;
+mod start;
 mod streaming;
 mod tile_file;
 mod tile_writer;
@@ -69,7 +70,7 @@ use std::sync::Arc;
 
 use self::base::BasePass;
 pub use self::collision::{Collider, Contact};
-use self::depth::{HostDepth, depth};
+use self::depth::{DeviceDepth, HostDepth};
 pub use self::drape::{Drape, Draping};
 pub use self::drape_source::DrapeSource;
 use self::geometric_transformation::GeometricTransformation;
@@ -85,7 +86,7 @@ use self::normal::{HostNormal, normal};
 use self::object_passes::ObjectPasses;
 pub use self::object_source::{ObjectSource, Stand};
 use self::occlusion::{HostOcclusion, occlusion};
-pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
+pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Start, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
 pub use self::quadtree::{Bounds, PATCH_SIDE, PatchLevel, Quadtree};
@@ -124,7 +125,7 @@ pub struct Terrain {
 /// The passes that make the picture of the terrain.
 enum Technique {
     Cpu(HostPasses),
-    RayCast(PixelPass, Shading),
+    RayCast(DeviceDepth, Shading),
     Mesh(BasePass, Triangles, Shading),
 }
 
@@ -204,8 +205,8 @@ impl Terrain {
             | Variant::DdaFragment
             | Variant::TiledCompute => {
                 let maps = on_device(inputs.drape)?;
-                let depth = depth(&build, &maps)?;
-                let shading = Shading::new(&build, &maps, &depth.target, device_tree.as_ref())?;
+                let depth = DeviceDepth::new(&build, &maps)?;
+                let shading = Shading::new(&build, &maps, depth.target(), device_tree.as_ref())?;
                 (Some(maps), Technique::RayCast(depth, shading))
             }
             Variant::Mesh | Variant::MeshLod => {
@@ -425,7 +426,7 @@ impl Paper for Terrain {
         );
         let mut counts = Vec::new();
         if let Technique::RayCast(depth, shading) = &self.technique {
-            counts.push(("depth", unfinished(&depth.target, &is_hit, 4)?));
+            counts.push(("depth", unfinished(depth.target(), &is_hit, 4)?));
             if let Some(shadow) = &shading.shadow {
                 counts.push(("shadow", unfinished(&shadow.target, &is_light, 1)?));
             }
@@ -478,7 +479,8 @@ impl Paper for Terrain {
     fn targets(&self) -> Vec<Target> {
         let mut targets = match &self.technique {
             Technique::Cpu(host) => host.show.targets(),
-            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => shading.targets(),
+            Technique::RayCast(depth, shading) => depth.targets().into_iter().chain(shading.targets()).collect(),
+            Technique::Mesh(_, _, shading) => shading.targets(),
         };
         targets.extend(self.objects.iter().flat_map(ObjectPasses::targets));
         targets.push(

@@ -81,6 +81,16 @@ choice! {
 }
 
 choice! {
+    /// The beginning of the rays that walk from cell to cell on the device, over a plane. Hits are the same.
+    pub enum Start {
+        /// The depth up to which the beam of 8 x 8 pixels around them is free; adds the pass `start`.
+        Tiles = ("tiles", "Where the beam of 8 x 8 pixels around them may first meet the map"),
+        /// The place where each comes over the map.
+        Rays = ("rays", "Where each comes over the map"),
+    }
+}
+
+choice! {
     /// The normals of the terrain's surface.
     pub enum Normals {
         /// [`Normals::Nodes`] where the cells of a bilinear surface are larger than a pixel, [`Normals::Surface`] elsewhere.
@@ -223,6 +233,8 @@ pub struct Parameters {
     pub lod: Lod,
     /// The surface between the samples.
     pub interpolation: Interpolation,
+    /// The beginning of rays in the variants `dda-compute` and `dda-fragment`.
+    pub start: Start,
     /// The normals of the terrain's surface.
     pub normals: Normals,
     /// The surface below the heights.
@@ -260,6 +272,7 @@ impl Default for Parameters {
         Parameters {
             lod: Lod::Pixel,
             interpolation: Interpolation::Bilinear,
+            start: Start::Tiles,
             normals: Normals::Auto,
             base: Base::Plane,
             base_level_m: None,
@@ -309,6 +322,10 @@ impl Parameters {
                 .section("3")
                 .cost(Cost::Pipelines)
                 .everyday(),
+            Parameter::new("start", field!(Parameters.start))
+                .help("Beginning of the rays of variants dda-compute and dda-fragment over a plane; hits are the same")
+                .section("3")
+                .cost(Cost::Pipelines),
             Parameter::new("mesh-error", field!(Parameters.mesh_error_px))
                 .range(Range::from(0.01).to(1000.0))
                 .unit("pixels")

@@ -136,7 +136,8 @@ impl Build<'_> {
         pass.build(self.shaders)
     }
 
-    /// A pass once for each map, that reads as `prior` what it left of the maps before. It writes two images in turn.
+    /// A pass once for each map, that reads as `prior` what it left of the maps before, and `others` of a map. It writes two images in
+    /// turn.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -146,12 +147,12 @@ impl Build<'_> {
         program: &str,
         ping_pong: [&Arc<ImageView>; 2],
         scene: &DeviceScene,
-        (mut prior, others): (Arc<ImageView>, &[(&'static str, Resource)]),
+        (mut prior, others): (Arc<ImageView>, &dyn Fn(usize) -> Vec<(&'static str, Resource)>),
     ) -> Result<PixelPass, Error> {
         let mut passes = Vec::new();
-        for (map, target) in scene.maps.iter().zip(ping_pong.into_iter().cycle()) {
+        for ((index, map), target) in scene.maps.iter().enumerate().zip(ping_pong.into_iter().cycle()) {
             let own = [("terrain", (&map.terrain).into()), ("prior", (&prior).into())];
-            let resources = [&own[..], &map.levels.resources(), others].concat();
+            let resources = [&own[..], &map.levels.resources(), &others(index)].concat();
             passes.push(self.pass(name, program, (target, Load::Discard), &resources)?);
             prior = target.clone();
         }

@@ -130,6 +130,7 @@ fn terrain_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
     for (variant, options) in [
         ("gpu-fragment", "base=earth shadows=true drape=slope object=sphere"),
         ("dda-fragment", "base=earth shadows=true drape=slope"),
+        ("dda-compute", "shadows=true lod=exact"),
         ("gpu-compute", "base=cylinder:100000 shadows=true drape=contours"),
         ("mesh-lod", "base=earth drape=contours"),
         ("tiled-compute", "base=earth shadows=true interpolation=bicubic"),

@@ -15,6 +15,7 @@ mod ridges;
 mod rough;
 mod scenes;
 mod silhouette;
+mod start;
 mod tiles;
 mod tints;
 mod variants;
