@@ -158,14 +158,17 @@ impl std::fmt::Display for Collision {
             surface => write!(formatter, "meets the {} of map {}", surface.as_str(), m.map),
         }?;
         // No minus before a zero.
-        let rounded = |v: DVec3| v.to_array().map(|c| (c * 1e6).round() / 1e6 + 0.0);
-        let [x, y, z] = rounded(m.point);
+        let rounded = |v: DVec3, half: f64| {
+            let rounded = |c: f64| (c * 1e6).round() / 1e6;
+            v.to_array().map(|c| if rounded(c).abs() < half { 0.0 } else { rounded(c) })
+        };
+        let [x, y, z] = rounded(m.point, 0.5e-3);
         write!(formatter, " at {x:.3},{y:.3},{z:.3}, ")?;
         match m.t {
             Some(t) => write!(formatter, "parameter {t:.6}, {:.3} m from its start", m.distance_m),
             None => write!(formatter, "{:.6} m from its centre", m.distance_m),
         }?;
-        let [x, y, z] = rounded(m.normal);
+        let [x, y, z] = rounded(m.normal, 0.5e-6);
         writeln!(formatter, ", normal {x:.6},{y:.6},{z:.6}, {} steps", m.steps)
     }
 }
@@ -190,5 +193,24 @@ mod tests {
             let whole = json_text(&json!({"collisions": listed, "warnings": warnings})).unwrap();
             assert_eq!(record(&collisions, &warnings).unwrap(), whole);
         }
+    }
+
+    #[test]
+    fn a_line_has_no_minus_before_a_zero() {
+        let contact = Contact {
+            t: Some(0.5),
+            distance_m: 1.0,
+            point: DVec3::new(-0.0004, -0.0006, -0.0),
+            normal: DVec3::new(-4e-7, 1.0, -6e-7),
+            surface: Surface::Terrain,
+            map: 0,
+            steps: 1,
+        };
+        let body = Body::from(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+        let line = Collision { body, contact: Some(contact) }.to_string();
+        assert!(
+            line.contains(" at 0.000,-0.001,0.000, ") && line.contains("normal 0.000000,1.000000,-0.000001,"),
+            "{line}"
+        );
     }
 }
