@@ -460,7 +460,8 @@ impl Paper for Terrain {
             )
         });
         let count = self.scene.grounds.len();
-        let winding = (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));
+        let winding =
+            (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));
         let voids = void_warnings(self.scene.maps.iter().map(|map| &**map));
         voids.into_iter().chain(winding).chain(haze).chain(lacking).collect()
     }
