@@ -203,9 +203,8 @@ mod tests {
                     let counted = (0..3).filter(|&axis| sweep.is_counted[axis]);
                     if counted.map(|axis| along(entry[axis], sweep.first.cell[axis])).sum::<i32>() == wave {
                         entries += 1;
-                        let is_in = |axis: usize, first: i32, count: u32| {
-                            (first..first + count as i32).contains(&entry[axis])
-                        };
+                        let is_in =
+                            |axis: usize, first: i32, count: u32| (first..first + count as i32).contains(&entry[axis]);
                         let [column, row] = sweep.axes;
                         assert!(is_in(column, x, columns) && is_in(row, y, rows), "{light:?} {wave} {entry:?}");
                     }

@@ -17,7 +17,7 @@ pub const TILE_PIXELS: u32 = 8;
 /// Format of depths.
 const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
-/// What the rays of each map begin with.
+/// Beginnings of the rays of each map.
 pub struct Starts {
     /// Of each map in their order; none where each ray begins at its own beginning.
     pub passes: Vec<PixelPass>,

@@ -141,7 +141,7 @@ fn a_tile_ends_before_its_rays_meet_the_land() {
     });
 }
 
-/// Where rays are bent every one begins by itself.
+/// Rays that are bent begin each by itself.
 #[test]
 fn there_are_no_tiles_over_a_curved_base() {
     gpu_test(|device| {
