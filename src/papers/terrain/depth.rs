@@ -32,7 +32,7 @@ impl DeviceDepth {
         let second = if scene.maps.len() > 1 { build.image("depth", VECTOR)? } else { first.clone() };
         let start = |map| starts.of_map(map).map(|start| ("starts", start.into())).into_iter().collect();
         let prior = scene.no_hits.clone();
-        let pass = build.map_passes(("depth", "3"), &program, [&first, &second], scene, (prior, &start))?;
+        let pass = build.map_passes(("depth", "3"), &program, [&first, &second], scene, prior, &start)?;
         Ok(DeviceDepth { starts, pass })
     }
 

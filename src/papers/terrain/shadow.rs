@@ -45,7 +45,7 @@ pub fn shadow(
     let first = build.image(&format!("{name}-0"), FORMAT)?;
     let second = if scene.maps.len() > 1 { build.image(&format!("{name}-1"), FORMAT)? } else { first.clone() };
     let prior = all_lit(build, &format!("/{name}"))?;
-    build.map_passes((name, "2"), &program, [&first, &second], scene, (prior, &|_| vec![("depth", depth.into())]))
+    build.map_passes((name, "2"), &program, [&first, &second], scene, prior, &|_| vec![("depth", depth.into())])
 }
 
 /// The pass on the processor.

@@ -147,7 +147,8 @@ impl Build<'_> {
         program: &str,
         ping_pong: [&Arc<ImageView>; 2],
         scene: &DeviceScene,
-        (mut prior, others): (Arc<ImageView>, &dyn Fn(usize) -> Vec<(&'static str, Resource)>),
+        mut prior: Arc<ImageView>,
+        others: &dyn Fn(usize) -> Vec<(&'static str, Resource)>,
     ) -> Result<PixelPass, Error> {
         let mut passes = Vec::new();
         for ((index, map), target) in scene.maps.iter().enumerate().zip(ping_pong.into_iter().cycle()) {

@@ -268,7 +268,7 @@ fn stabilities(context: &mut Context<'_>) -> Result<(), Error> {
     let (mut rows, mut ended) = (Vec::new(), Ok(()));
     let mut keep = |rows: &[_]| context.keep_table(&stability::table(rows.to_vec()));
     context.console.watch("following the lava", &mut |watch| {
-        ended = stability::follow(&mut machine, &context.setup, frames, watch, (&mut rows, &mut keep));
+        ended = stability::follow(&mut machine, &context.setup, frames, watch, &mut rows, &mut keep);
     });
     if rows.is_empty() {
         return ended.and(Err(Error::Interrupted));

@@ -193,6 +193,9 @@ pub fn table(rows: Vec<Vec<Value>>) -> ResultTable {
     ResultTable { title: "A fluid over many steps: what its laws bound", columns: &COLUMNS, rows }
 }
 
+/// Keeps the rows that are there so far.
+pub type Keep<'a> = dyn FnMut(&[Vec<Value>]) -> Result<(), Error> + 'a;
+
 /// Follows a fluid over so many frames; `keep` is given the rows whenever there is one more.
 ///
 /// # Errors
@@ -203,7 +206,8 @@ pub fn follow(
     setup: &Setup,
     frames: u32,
     watch: &mut Watch<'_>,
-    (rows, keep): (&mut Vec<Vec<Value>>, &mut dyn FnMut(&[Vec<Value>]) -> Result<(), Error>),
+    rows: &mut Vec<Vec<Value>>,
+    keep: &mut Keep<'_>,
 ) -> Result<(), Error> {
     let p = &setup.parameters;
     let scene = setup.load()?;
