@@ -5,9 +5,9 @@
                          [--variants gpu-compute,dda-compute,dda-fragment] [--lod exact]
 
 Needs numpy and mitsuba (PyPI), which brings Embree. The two take turns on the same cores, and medians count. Of ours it is
-the pass `depth`, which makes its rays itself and meets bilinear patches; of Embree the intersection of rays that are
-prepared outside of the time, with two triangles for each cell, in single precision. What each builds before its first
-ray stands beside it: of Embree the tree, of ours the whole loading of the map with its levels. A hit of one alone and
+the pass `depth`, and `start` where rays begin with their tile: they make their rays themselves and meet bilinear patches.
+Of Embree it is the intersection of rays that are prepared outside of the time, with two triangles for each cell, in single
+precision. What each builds before its first ray stands beside it: of Embree the tree, of ours the whole loading of the map with its levels. A hit of one alone and
 the distance between hits of both tell that the same view is compared.
 """
 
@@ -135,8 +135,9 @@ def ours(arguments, land, eye, target, folder):
     return record["runs"], found
 
 
-def median_of(run, name):
-    return next(entry for entry in run["passes"] if entry["name"] == name)["gpu_ms"]["median"]
+def rays_ms(run):
+    """Median of the passes that cast the rays."""
+    return sum(entry["gpu_ms"]["median"] for entry in run["passes"] if entry["name"] in ("start", "depth"))
 
 
 def main():
@@ -171,7 +172,7 @@ def main():
                 runs, found = ours(arguments, folder / "land", eye, target, folder)
                 loads_ms.append(runs[0]["load_ms"])
                 for run in runs:
-                    times[run["variant"]].append(median_of(run, "depth"))
+                    times[run["variant"]].append(rays_ms(run))
             depth = np.where(found[:, 3].astype(int) % 8 == TERRAIN, found[:, 0], np.inf)
             one_alone = np.isfinite(depth) != np.isfinite(theirs)
             both = np.isfinite(depth) & np.isfinite(theirs)
