@@ -136,6 +136,12 @@ impl Laws {
         Ok(found)
     }
 
+    /// The first step presses apart what the lattice of the start has laid too close, at walls above all: that energy counts as
+    /// the start's.
+    fn settle(&mut self, first: &Found) {
+        self.energy_j_kg = self.energy_j_kg.map(|start| start.max(first.energy_j_kg));
+    }
+
     /// Fails by the first law that a frame breaks after another.
     fn hold(&self, before: &Found, now: &Found) -> Result<(), String> {
         let Found { fastest_m_s, densest, energy_j_kg, mean_k, .. } = *now;
@@ -215,7 +221,7 @@ pub fn follow(
     let mut animate = Animate::new(&machine.shaders, "stability", p, &scene.particles)?;
     let spacing_m = Scale::of(p).spacing_m;
     let start: Vec<DVec3> = scene.particles.positions.iter().map(|place| place.as_dvec3()).collect();
-    let laws = Laws::of(p, bed, &start);
+    let mut laws = Laws::of(p, bed, &start);
     let vent = p.flow.vent;
     let vent_m = (vent.effusion_m3_s > 0.0).then(|| DVec2::from(vent.middle_m.map(f64::from)));
     let every = frames.div_ceil(ROWS).max(1);
@@ -232,6 +238,9 @@ pub fn follow(
         let items = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&read_buffer(&machine.device, &sph.sort.items)?);
         let held = counted(&items[..out.min(items.len())]).and_then(|()| {
             let found = laws.found(bed, &state, &densities)?;
+            if before.is_none() {
+                laws.settle(&found);
+            }
             laws.hold(before.as_ref().unwrap_or(&found), &found)?;
             Ok(found)
         });
