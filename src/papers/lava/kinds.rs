@@ -4,7 +4,6 @@
 use glam::Vec3;
 
 use super::parameters::{Parameters, SurfaceKind};
-use super::sph::crust::Crust;
 use super::sph::heat::{Heat, Rheology};
 use super::sph::parameters::{Flow, Simulation};
 use super::sph::vent::Vent;
@@ -36,7 +35,6 @@ pub fn pahoehoe() -> Parameters {
         slope_deg: Some(10.0),
         renewal_s: 6.0,
         heat: heat(1423.0, 12.0, 20.0, 1000.0),
-        crust: Crust { pieces: 1.5, ..Crust::default() },
         vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2 },
         ..Flow::default()
     };
@@ -60,7 +58,6 @@ pub fn ropy() -> Parameters {
         slope_deg: Some(14.0),
         renewal_s: 20.0,
         heat: heat(1423.0, 12.0, 6.0, 2500.0),
-        crust: Crust { skin_m: 0.006, ..Crust::default() },
         ..Flow::default()
     };
     Parameters {
@@ -83,7 +80,6 @@ pub fn toes() -> Parameters {
         slope_deg: Some(4.0),
         renewal_s: 20.0,
         heat: heat(1423.0, 12.0, 10.0, 1200.0),
-        crust: Crust { pieces: 1.5, ..Crust::default() },
         vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
         ..Flow::default()
     };
@@ -108,7 +104,6 @@ pub fn aa() -> Parameters {
         slope_deg: Some(18.0),
         renewal_s: 6.0,
         heat: heat(1323.0, 6.0, 60.0, 9000.0),
-        crust: Crust { pieces: 1.2, jumble: 0.6, healing_s: 1.0, ..Crust::default() },
         vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
         ..Flow::default()
     };
