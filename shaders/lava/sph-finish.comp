@@ -46,7 +46,8 @@ void main() {
     vec2 turns = flow.periodic * floor(place_m.xz / flow.space_m.xz);
     vec3 within = vec3(place_m.x - turns.x * flow.space_m.x, place_m.y, place_m.z - turns.y * flow.space_m.z);
     vec2 way_m = place_m.xz - began_m(at).xz;
-    vec4 carried_m = flow.kept_rock.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
+    vec2 kept = vec2(float(flow.kept_rock & 1u), float(flow.kept_rock >> 1u));
+    vec4 carried_m = kept.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
     carried.list[at] = carried_m;
     imageStore(carried_after, texel, carried_m);
     imageStore(positions, texel, vec4(within, 0.0));

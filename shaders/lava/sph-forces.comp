@@ -28,10 +28,18 @@ layout(set = 0, binding = 8, std430) buffer Change {
     vec4 list[]; // metres per second
 } change;
 
+layout(set = 0, binding = 14, std430) buffer Unmet {
+    uint any[3]; // of `sph-viscosity`
+} unmet;
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
+    }
+    if (at == 0u) {
+        unmet.any[0] = 0u;
+        unmet.any[2] = 1u;
     }
     uint particle = items.list[at].y;
     ivec2 texel = ivec2(particle % flow.width, particle / flow.width);

@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "lava/sph.glsl"
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
+#include "lava/sph-lists.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second, and kelvin as the step begins
@@ -71,27 +72,28 @@ float kelvin_of(uint particle) {
     return pushed.list[particle].w;
 }
 
+vec3 place_m;
+float kelvin;
+float conducted = 0.0;
+vec3 gradient = vec3(0.0);
+
+void gather(uint i) {
+    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    float weight = slope(length(way));
+    conducted -= weight * (kelvin_of(i) - kelvin);
+    gradient += weight * way;
+}
+
+#include "lava/sph-gather.glsl"
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
-    vec3 place_m = began_m(at);
-    float kelvin = kelvin_of(at);
-    float conducted = 0.0;
-    vec3 gradient = vec3(0.0);
-    for (int z = -1; z <= 1; z++) {
-        for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_at(place_m, x, z);
-            uint end = min(stretch.y, stretch.x + MOST);
-            for (uint i = stretch.x; i < end; i++) {
-                vec3 way = apart(place_m - began_m(i)) / flow.support_m;
-                float weight = slope(length(way));
-                conducted -= weight * (kelvin_of(i) - kelvin);
-                gradient += weight * way;
-            }
-        }
-    }
+    place_m = began_m(at);
+    kelvin = kelvin_of(at);
+    gather_around(at, place_m);
     float steepness = length(flow.volume * gradient + wall_gradient_once(walls_at(place_m)));
     steepness = steepness > STEEP ? steepness : 0.0;
     float enthalpy = enthalpy_of(kelvin) + flow.conduction * conducted;

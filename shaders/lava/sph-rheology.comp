@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/sph-lists.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Along {
     vec4 list[]; // rates of strain per second: the tensor's diagonal
@@ -34,33 +35,29 @@ const float YIELD = 13.00997; // log10 of the yield stress in Pa is this, less
 const float YIELD_PER_K = 0.0089;
 const float MOST_BITS = 60.0; // of a ratio that single precision holds
 
-// The root of twice the sum of the squares of all components of the mean.
-float strain_around(uint at) {
-    vec3 place_m = began_m(at);
-    vec3 diagonal = vec3(0.0);
-    vec3 beside = vec3(0.0);
-    float weights = 0.0;
-    for (int z = -1; z <= 1; z++) {
-        for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_at(place_m, x, z);
-            uint end = min(stretch.y, stretch.x + MOST);
-            for (uint i = stretch.x; i < end; i++) {
-                float weight = kernel(length(apart(place_m - began_m(i))) / flow.support_m);
-                diagonal += weight * along.list[i].xyz;
-                beside += weight * across.list[i].xyz;
-                weights += weight;
-            }
-        }
-    }
-    return sqrt(2.0 * dot(diagonal, diagonal) + dot(beside, beside)) / weights;
+vec3 place_m;
+vec3 diagonal = vec3(0.0);
+vec3 beside = vec3(0.0);
+float weights = 0.0;
+
+void gather(uint i) {
+    float weight = kernel(length(apart(place_m - began_m(i))) / flow.support_m);
+    diagonal += weight * along.list[i].xyz;
+    beside += weight * across.list[i].xyz;
+    weights += weight;
 }
+
+#include "lava/sph-gather.glsl"
 
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
-    float strain_per_s = strain_around(at);
+    place_m = began_m(at);
+    gather_around(at, place_m);
+    // The root of twice the sum of the squares of all components of the mean.
+    float strain_per_s = sqrt(2.0 * dot(diagonal, diagonal) + dot(beside, beside)) / weights;
     float kelvin = heat.list[at].x;
     float fit = BITS * B_K * (1.0 / max(kelvin - C_K, COLDEST_K) - 1.0 / (flow.melt_k - C_K));
     float melt = exp2(min(fit, MOST_BITS));

@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;
 #include "lava/sph.glsl"
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
+#include "lava/sph-lists.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second after gravity
@@ -54,28 +55,29 @@ mat3 inverse_of(mat3 moment) {
     return adjugate * shares.x + mat3(shares.y);
 }
 
+vec3 place_m;
+vec3 pushed_m_s;
+// Slopes of the speed, times h, and what they come out as where every slope is 1.
+mat3 slopes = mat3(0.0);
+mat3 moment = mat3(0.0);
+
+void gather(uint i) {
+    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    vec3 weight = flow.laplacian * slope(length(way)) * way;
+    slopes += outer(pushed.list[i].xyz - pushed_m_s, weight);
+    moment -= outer(way, weight);
+}
+
+#include "lava/sph-gather.glsl"
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
-    vec3 place_m = began_m(at);
-    vec3 pushed_m_s = pushed.list[at].xyz;
-    // Slopes of the speed, times h, and what they come out as where every slope is 1.
-    mat3 slopes = mat3(0.0);
-    mat3 moment = mat3(0.0);
-    for (int z = -1; z <= 1; z++) {
-        for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_at(place_m, x, z);
-            uint end = min(stretch.y, stretch.x + MOST);
-            for (uint i = stretch.x; i < end; i++) {
-                vec3 way = apart(place_m - began_m(i)) / flow.support_m;
-                vec3 weight = flow.laplacian * slope(length(way)) * way;
-                slopes += outer(pushed.list[i].xyz - pushed_m_s, weight);
-                moment -= outer(way, weight);
-            }
-        }
-    }
+    place_m = began_m(at);
+    pushed_m_s = pushed.list[at].xyz;
+    gather_around(at, place_m);
     Walls walls = walls_at(place_m);
     vec4 q = walls.sides_q;
     vec4 sides = vec4(shear_beyond(q.x), shear_beyond(q.y), shear_beyond(q.z), shear_beyond(q.w));

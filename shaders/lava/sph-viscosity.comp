@@ -4,8 +4,8 @@
 
 // One step of Chebyshev's semi-iteration (Golub and Varga 1961) on the implicit viscosity of Morris et al. (1997):
 // (1 + sum of a_ij + a_wall) v_i - sum of a_ij v_j = what gravity left. The matrix is symmetric and its rows add up to 1, so
-// no step changes the momentum of lava that touches no wall; no sum over all particles is needed. Two particles of unlike
-// viscosities have their harmonic mean (Cleary 1998), which is as symmetric.
+// no step changes the momentum of lava that touches no wall; no sum over all particles is needed. A velocity is as far off as the
+// largest residual at most, since no row of the inverse adds up to more than 1: once every residual is small nothing changes any more.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,69 +13,74 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
-#include "lava/bed.glsl"
-#include "lava/sph-walls.glsl"
+#include "lava/sph-lists.glsl"
+#include "lava/sph-drag.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Pushed {
+layout(set = 0, binding = 4, std430) readonly buffer Drags {
+    float list[]; // as the lists
+} drags;
+
+layout(set = 0, binding = 5, std430) readonly buffer WallDrags {
+    float list[];
+} wall_drags;
+
+layout(set = 0, binding = 6, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second
 } pushed;
 
-layout(set = 0, binding = 5, std430) readonly buffer From {
+layout(set = 0, binding = 7, std430) readonly buffer From {
     vec4 list[];
 } from;
 
-layout(set = 0, binding = 6, std430) buffer To {
+layout(set = 0, binding = 8, std430) buffer To {
     vec4 list[];
 } to;
 
-layout(set = 0, binding = 7, std430) buffer Change {
+layout(set = 0, binding = 11, std430) buffer Change {
     vec4 list[];
 } change;
 
-#ifdef RHEOLOGY_BASALT
-layout(set = 0, binding = 8, std430) readonly buffer Viscosities {
-    float list[]; // over the melt's
-} viscosities;
+layout(set = 0, binding = 14, std430) buffer Unmet {
+    uint any[3]; // 1 where an iteration of this turn leaves a residual that is not small
+} unmet;
 
-float viscosity_at(uint at) {
-    return viscosities.list[at];
-}
-
-float mean_of(float a, float b) {
-    return 2.0 * a * b / (a + b);
-}
-#else
-float viscosity_at(uint at) {
-    return 1.0;
-}
-
-float mean_of(float a, float b) {
-    return 1.0;
-}
-#endif
+// Of what gravity changes in a step.
+const float SMALL = 3.0e-4;
 
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
-    vec3 place_m = began_m(at);
+    bool is_met = unmet.any[(flow.turn + 2u) % 3u] == 0u;
+    if (at == 0u) {
+        unmet.any[(flow.turn + 1u) % 3u] = 0u;
+    }
     vec3 velocity = from.list[at].xyz;
-    float viscosity = viscosity_at(at);
-    vec3 dragged = vec3(0.0);
-    for (int z = -1; z <= 1; z++) {
-        for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_at(place_m, x, z);
-            uint end = min(stretch.y, stretch.x + MOST);
-            for (uint i = stretch.x; i < end; i++) {
-                float q = length(apart(place_m - began_m(i))) / flow.support_m;
-                dragged -= mean_of(viscosity, viscosity_at(i)) * slope(q) * (velocity - from.list[i].xyz);
+    if (is_met) {
+        to.list[at] = vec4(velocity, 0.0);
+        return;
+    }
+    uvec2 reach = reach_of(at);
+    vec3 dragged = wall_drags.list[at] * velocity;
+    for (uint n = 0u; n < reach.x; n++) {
+        dragged += drags.list[n * flow.listed + at] * (velocity - from.list[neighbour_of(at, n)].xyz);
+    }
+    if (reach.y > 0u) {
+        vec3 place_m = began_m(at);
+        float viscosity = viscosity_at(at);
+        for (uint n = 0u; n < reach.y; n++) {
+            uvec2 stretch = nth_stretch(place_m, n);
+            for (uint i = stretch.x; i < stretch.y; i++) {
+                dragged += drag_by(place_m, viscosity, i) * (velocity - from.list[i].xyz);
             }
         }
     }
-    float wall = flow.wall_drag * viscosity * wall_drag(walls_at(place_m));
-    vec3 braked = velocity + flow.drag * dragged + wall * velocity;
-    vec3 changed = flow.kept * change.list[at].xyz + flow.gained * (pushed.list[at].xyz - braked);
+    vec3 residual = pushed.list[at].xyz - (velocity + dragged);
+    vec3 changed = flow.kept * change.list[at].xyz + flow.gained * residual;
     change.list[at] = vec4(changed, 0.0);
     to.list[at] = vec4(velocity + changed, 0.0);
+    if (length(residual) > SMALL * flow.time_step_s * length(flow.gravity_m_s2)) {
+        unmet.any[flow.turn] = 1u;
+    }
 }

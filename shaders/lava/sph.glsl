@@ -11,7 +11,7 @@ layout(push_constant, std430) uniform Flow {
     float support_m; // h, where the kernel ends
     float volume; // of a particle over the kernel's unit, h^3: a lattice at rest sums up to 1
     float drag; // of two particles: twice step, viscosity and volume over density, per h^2
-    float wall_drag; // of a wall: twice step and viscosity over density, per h^2
+    uint listed; // particles, the first by cells, that have a list of those near them
     float kept; // of Chebyshev's last change
     float gained; // of the residual
     float margin_m; // no particle comes nearer to a wall
@@ -26,7 +26,8 @@ layout(push_constant, std430) uniform Flow {
     float per_viscosity; // 1 over that viscosity
     float stiffest; // most of that viscosity that crust and cold lava have
     float share; // of the first of two layings of the rock in what is seen
-    vec2 kept_rock; // of each laying: 1, or 0 where the step begins with a new one
+    uint kept_rock; // a bit for each laying that does not begin anew with the step
+    uint turn; // of three, in which iterations say whether there is more to do
 } flow;
 
 layout(set = 0, binding = 0, std430) readonly buffer Starts {
@@ -47,6 +48,8 @@ layout(set = 0, binding = 3, std430) readonly buffer Zs {
 
 // lavapipe ends all loops of a shader after 65,535 iterations: nine stretches of so many particles.
 const uint MOST = 7200u;
+const uint LISTED = 96u; // particles of a list; a lattice at rest has 74 within the farther reach
+const uint WALKS = 0xffffffffu; // in place of a list's length: all of 27 cells are looked at
 const float SIGMA = 3.34225380493; // 21 / (2 pi)
 
 vec3 began_m(uint at) {

@@ -344,7 +344,7 @@ fn more_particles_in_one_place_than_a_loop_takes_are_refused() {
             let checked = animate.sph().unwrap().check(device).map_err(|error| error.to_string());
             assert_eq!(checked.is_err(), is_refused, "{count} particles: {checked:?}");
             if let Err(error) = checked {
-                let parts = ["sph-density", "`time-step`", "`particles`"];
+                let parts = ["sph-neighbours", "`time-step`", "`particles`"];
                 assert!(parts.iter().all(|part| error.contains(part)), "{error}");
             }
         }

@@ -1,10 +1,12 @@
 //! Stage one as a viscous fluid (chapter 9, "Improved particle simulation"): smoothed particle hydrodynamics.
 //!
 //! ```text
-//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-heat ─► sph-strain ─┐
-//!   ┌──────────────────────────────────────────────────────────────────────────────────────────────────────────────────┘
-//!   └─► sph-rheology ─► sph-viscosity ─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
-//!                         `─ a few dozen times            `─ corrections ─´
+//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-neighbours ─┐
+//!   ┌──────────────────────────────────────────────────────────────────────────────────────────────────────────┘
+//!   └─► sph-heat ─► sph-strain ─► sph-rheology ─► sph-drag ─► sph-viscosity ─► sph-predict ─► sph-neighbours-predicted ─┐
+//!   ┌───────────────────────────────────────────────────────────────`─ a few dozen times ──────────────────────────────┘
+//!   └─► sph-density ─► sph-correct ─► sph-finish
+//!         `─ corrections ─´
 //! ```
 //!
 //! Pressure is that of position-based fluids (Macklin and Mueller 2013), which no step makes unstable; viscosity is implicit
@@ -17,14 +19,18 @@ pub mod check;
 pub mod crust;
 pub mod heat;
 pub mod kernel;
+pub mod neighbours;
 pub mod parameters;
 pub mod rock;
 mod sph_correct;
 mod sph_density;
+mod sph_drag;
 mod sph_finish;
 mod sph_forces;
 mod sph_heat;
 mod sph_inflow;
+mod sph_neighbours;
+mod sph_neighbours_predicted;
 mod sph_predict;
 mod sph_rheology;
 mod sph_strain;
@@ -41,9 +47,11 @@ use glam::DVec3;
 use self::bed::Bed;
 use self::chebyshev::Coefficients;
 use self::heat::Rheology;
+use self::neighbours::Neighbours;
 use self::rock::{Layings, Rock};
 use self::sph_correct::sph_correct;
 use self::sph_density::sph_density;
+use self::sph_drag::sph_drag;
 use self::sph_finish::sph_finish;
 use self::sph_forces::sph_forces;
 use self::sph_heat::sph_heat;
@@ -75,7 +83,7 @@ host_block! {
         support_m: f32,
         volume: f32,
         drag: f32,
-        wall_drag: f32,
+        listed: u32,
         kept: f32,
         gained: f32,
         margin_m: f32,
@@ -90,7 +98,8 @@ host_block! {
         per_viscosity: f32,
         stiffest: f32,
         share: f32,
-        kept_rock: [f32; 2],
+        kept_rock: u32,
+        turn: u32,
     }
 }
 
@@ -116,8 +125,10 @@ pub struct Sph {
     /// Into the first two states.
     inflow: [Pass; 2],
     forces: [Pass; 3],
+    neighbours: Neighbours,
     heat_pass: Pass,
     rheology: Option<Rheologic>,
+    drag: Pass,
     viscosity: [Pass; 2],
     predict: Pass,
     density: [Pass; 2],
@@ -139,7 +150,6 @@ pub struct Sph {
     pub predicted: [Arc<Buffer>; 2],
     /// Factor of the constraint times h^-2, density over that at rest: before the last correction.
     pub factors: Arc<Buffer>,
-    crowded: Arc<Buffer>,
     /// The ground: slopes along x and z, heights in metres.
     pub bed: Arc<ImageView>,
     /// The rock on it.
@@ -233,14 +243,17 @@ impl Sph {
         let velocities = [buffer("velocities-a", 16)?, buffer("velocities-b", 16)?];
         let predicted = [buffer("predicted-a", 16)?, buffer("predicted-b", 16)?];
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
+        let wall_drags = buffer("wall-drags", 4)?;
+        let unmet = context.upload("unmet", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 3]))?;
+        let viscous = Viscous { pushed: &pushed, change: &change, wall_drags: &wall_drags, unmet: &unmet };
+        let near = Neighbours::new(context, &sort, particle_count, &predicted[0])?;
         let heat = buffer("heat", 8)?;
         let latent = parameters.flow.heat.crystallising_k();
         let latent = context.upload("latent", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&latent))?;
-        let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
 
         let is_level = bed.is_level();
         let bed = bed.texture(context)?;
-        let ground = Ground { sort: &sort, bed: &bed };
+        let ground = Ground { sort: &sort, near: &near, bed: &bed };
         let coefficients = chebyshev::coefficients(scale.stiffness * scale.stiffest);
         let rheology = match parameters.flow.heat.rheology {
             Rheology::Constant => None,
@@ -248,7 +261,7 @@ impl Sph {
                 let strains = [buffer("strains-along", 16)?, buffer("strains-across", 16)?];
                 let viscosities = buffer("viscosities", 4)?;
                 let strain = sph_strain(shaders, ground, &pushed, strains.each_ref())?;
-                let pass = sph_rheology(shaders, &sort, strains.each_ref(), [&heat, &viscosities])?;
+                let pass = sph_rheology(shaders, ground, strains.each_ref(), [&heat, &viscosities])?;
                 Some(Rheologic { strain, pass, strains, viscosities })
             }
         };
@@ -258,12 +271,12 @@ impl Sph {
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
         let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state]);
-        let forces = |state| sph_forces(shaders, &sort, state, [&pushed, &velocities[0], &change]);
+        let forces = |state| sph_forces(shaders, &sort, state, &velocities[0], viscous);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
-            sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], [&pushed, &change], viscosities)
+            sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], viscous, viscosities)
         };
-        let density = |from: usize| sph_density(shaders, ground, &predicted[from], [&factors, &crowded]);
+        let density = |from: usize| sph_density(shaders, ground, &predicted[from], &factors);
         let correct =
             |[from, to]: [usize; 2]| sph_correct(shaders, ground, [&predicted[from], &predicted[to]], &factors);
         let finish = |[from, to]: [usize; 2]| {
@@ -274,6 +287,7 @@ impl Sph {
             inflow: [inflow(0)?, inflow(1)?],
             forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
             heat_pass: sph_heat(shaders, ground, [&pushed, &latent], &heat)?,
+            drag: sph_drag(shaders, ground, &wall_drags, viscosities)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
             rheology,
             predict: sph_predict(shaders, ground, &velocities[coefficients.len() % 2], &predicted[0])?,
@@ -289,7 +303,7 @@ impl Sph {
             heat,
             predicted,
             factors,
-            crowded,
+            neighbours: near,
             bed,
             rock,
         })
@@ -302,7 +316,8 @@ impl Sph {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, from: usize, step: u32, [before, out]: [u32; 2]) -> Result<(), Error> {
         let Layings { kept, .. } = self.rock.layings(step);
-        let constants = FlowConstants { particles: out, kept_rock: kept, ..self.constants };
+        let kept_rock = u32::from(kept[0] > 0.0) | u32::from(kept[1] > 0.0) << 1;
+        let constants = FlowConstants { particles: out, kept_rock, ..self.constants };
         let particles = out;
         // The start has all of them.
         if let Some(inflow) = self.inflow.get(from).filter(|_| out > before) {
@@ -314,15 +329,19 @@ impl Sph {
         };
         self.sort.record(frame, from, out)?;
         run(frame, &self.forces[from], &constants)?;
+        run(frame, &self.neighbours.began, &constants)?;
         run(frame, &self.heat_pass, &constants)?;
         if let Some(rheology) = &self.rheology {
             run(frame, &rheology.strain, &constants)?;
             run(frame, &rheology.pass, &constants)?;
         }
+        run(frame, &self.drag, &constants)?;
         for (at, &[kept, gained]) in self.coefficients.iter().enumerate() {
-            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, ..constants })?;
+            let turn = at as u32 % 3;
+            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, turn, ..constants })?;
         }
         run(frame, &self.predict, &constants)?;
+        run(frame, &self.neighbours.predicted, &constants)?;
         for at in 0..self.corrections as usize {
             run(frame, &self.density[at % 2], &constants)?;
             run(frame, &self.correct[at % 2], &constants)?;
@@ -366,18 +385,22 @@ impl Sph {
     /// Fails where a device's loops left particles out.
     ///
     /// # Errors
-    /// [`Error::Pass`] for more particles in one place than a loop may take; errors of the Vulkan layer.
+    /// As [`Neighbours::check`].
     pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
-        let bytes = read_buffer(device, &self.crowded)?;
-        if bytes.iter().all(|byte| *byte == 0) {
-            return Ok(());
-        }
-        let problem =
-            "more than 7,200 particles lie in three cells above each other, beyond which drivers end loops; take a \
-                       shorter `time-step` or fewer `particles`"
-                .to_owned();
-        Err(Error::Pass { pass: "sph-density".to_owned(), problem })
+        self.neighbours.check(device)
     }
+}
+
+/// What all iterations of the viscosity share.
+#[derive(Clone, Copy)]
+struct Viscous<'a> {
+    /// Right side.
+    pushed: &'a Arc<Buffer>,
+    /// Of the last iteration.
+    change: &'a Arc<Buffer>,
+    wall_drags: &'a Arc<Buffer>,
+    /// Words by which iterations say whether there is more to do.
+    unmet: &'a Arc<Buffer>,
 }
 
 /// Begins a pass over the particles by cells.
@@ -395,6 +418,7 @@ pub(super) fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassB
 #[derive(Clone, Copy)]
 struct Ground<'a> {
     sort: &'a Sort,
+    near: &'a Neighbours,
     bed: &'a Arc<ImageView>,
 }
 
@@ -402,6 +426,11 @@ impl Ground<'_> {
     /// Begins a pass over the particles that feels the walls.
     fn over_cells(self, name: &'static str, shader: &str) -> PassBuilder {
         over_cells(name, shader, self.sort).with("bed", self.bed)
+    }
+
+    /// And looks at those near each of them.
+    fn over_neighbours(self, name: &'static str, shader: &str) -> PassBuilder {
+        self.near.over(name, shader, self.sort).with("bed", self.bed)
     }
 }
 
@@ -414,18 +443,21 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let sides = parameters.space_m.as_dvec3() / DVec3::from(cells.counts.map(f64::from));
     let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
     let iterations =
-        chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 2.0;
+        chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 5.0;
+    let (listed, longest) = neighbours::bytes(parameters.particles);
+    let looked_at_in_all =
+        2.0 * particles * looked_at + iterations * neighbours::looked_at(parameters.particles, looked_at);
     let [columns, _, rows] = parameters.density.map(f64::from);
     let detail = f64::from(parameters.flow.crust.detail(parameters).unwrap_or(0));
     let crust = detail * detail * columns * rows;
     Estimate {
         bytes: vec![
-            ("particles", 164.0 * particles + sort::bytes(&cells)),
+            ("particles", 168.0 * particles + listed + sort::bytes(&cells)),
             ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
         ],
-        buffers: vec![("particles", 16.0 * particles)],
+        buffers: vec![("particles", longest.max(16.0 * particles))],
         passes: Some(("corrections", iterations as u64 + 24)),
-        invocations: vec![("particles", particles * looked_at * iterations), ("density", 2.0 * crust * looked_at)],
+        invocations: vec![("particles", looked_at_in_all), ("density", 2.0 * crust * looked_at)],
         ..Estimate::default()
     }
 }
@@ -443,7 +475,7 @@ fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, is_level: bo
         support_m: scale.support_m as f32,
         volume: scale.volume as f32,
         drag: (2.0 * scale.stiffness * scale.laplacian) as f32,
-        wall_drag: (2.0 * scale.stiffness) as f32,
+        listed: neighbours::listed(cells.particles),
         kept: 0.0,
         gained: 0.0,
         margin_m: scale.margin_m as f32,
@@ -458,6 +490,7 @@ fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, is_level: bo
         per_viscosity: 1.0 / flow.viscosity_pa_s.max(f32::MIN_POSITIVE),
         stiffest: scale.stiffest as f32,
         share: 0.0,
-        kept_rock: [1.0; 2],
+        kept_rock: 3,
+        turn: 0,
     }
 }

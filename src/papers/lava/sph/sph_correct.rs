@@ -17,7 +17,7 @@ pub fn sph_correct(
     factors: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
-        .over_cells("sph-correct", "lava/sph-correct.comp")
+        .over_neighbours("sph-correct", "lava/sph-correct.comp")
         .with("predicted", predicted)
         .with("factors", factors)
         .with("corrected", corrected)

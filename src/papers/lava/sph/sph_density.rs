@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 
-/// Makes the pass; `factors` takes factor and density, `crowded` a 1 where a loop was cut off.
+/// Makes the pass; `factors` takes factor and density.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -14,12 +14,11 @@ pub fn sph_density(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     predicted: &Arc<Buffer>,
-    [factors, crowded]: [&Arc<Buffer>; 2],
+    factors: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
-        .over_cells("sph-density", "lava/sph-density.comp")
+        .over_neighbours("sph-density", "lava/sph-density.comp")
         .with("predicted", predicted)
         .with("factors", factors)
-        .with("crowded", crowded)
         .build(shaders)
 }

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::{Viscous, over_cells};
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from a state; `pushed` and `velocities` take the velocities, `change` is set to none.
+/// Makes the pass from a state; `pushed` and `velocities` take the velocities, `change` is set to none, and `unmet` says that iterations have begun.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -16,7 +16,8 @@ pub fn sph_forces(
     shaders: &ShaderLibrary,
     sort: &Sort,
     state: &State,
-    [pushed, velocities, change]: [&Arc<Buffer>; 3],
+    velocities: &Arc<Buffer>,
+    Viscous { pushed, change, unmet, .. }: Viscous<'_>,
 ) -> Result<Pass, Error> {
     over_cells("sph-forces", "lava/sph-forces.comp", sort)
         .with("velocities", &state.velocities)
@@ -24,5 +25,6 @@ pub fn sph_forces(
         .with("pushed", pushed)
         .with("to", velocities)
         .with("change", change)
+        .with("unmet", unmet)
         .build(shaders)
 }

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
-use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from rates of strain, by diagonal and what stands beside it, and temperatures; `viscosities` takes those of the
 /// particles over the melt's.
@@ -13,11 +12,13 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 /// Errors of the Vulkan layer.
 pub fn sph_rheology(
     shaders: &ShaderLibrary,
-    sort: &Sort,
+    ground: Ground<'_>,
     [along, across]: [&Arc<Buffer>; 2],
     [heat, viscosities]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
-    over_cells("sph-rheology", "lava/sph-rheology.comp", sort)
+    ground
+        .near
+        .over("sph-rheology", "lava/sph-rheology.comp", ground.sort)
         .with("along", along)
         .with("across", across)
         .with("heat", heat)

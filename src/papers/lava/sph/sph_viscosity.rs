@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::Ground;
+use super::{Ground, Viscous};
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 
-/// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change,
-/// `viscosities` those of the particles over the melt's where they are not all the same.
+/// Makes the pass from one iterate of the velocities to the next; `viscosities` are those of the particles over the melt's where they
+/// are not all the same.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -14,7 +14,7 @@ pub fn sph_viscosity(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     [from, to]: [&Arc<Buffer>; 2],
-    [pushed, change]: [&Arc<Buffer>; 2],
+    viscous: Viscous<'_>,
     viscosities: Option<&Arc<Buffer>>,
 ) -> Result<Pass, Error> {
     let shader = match viscosities {
@@ -22,11 +22,15 @@ pub fn sph_viscosity(
         Some(_) => "lava/sph-viscosity-basalt.comp",
     };
     let pass = ground
-        .over_cells("sph-viscosity", shader)
-        .with("pushed", pushed)
+        .near
+        .over("sph-viscosity", shader, ground.sort)
+        .with("drags", &ground.near.drags)
+        .with("wall_drags", viscous.wall_drags)
+        .with("pushed", viscous.pushed)
         .with("from", from)
         .with("to", to)
-        .with("change", change);
+        .with("change", viscous.change)
+        .with("unmet", viscous.unmet);
     match viscosities {
         None => pass.build(shaders),
         Some(viscosities) => pass.with("viscosities", viscosities).build(shaders),

@@ -1,0 +1,25 @@
+// The particles near each one: lists of them by `sph-neighbours`.
+
+layout(set = 0, binding = 12, std430) readonly buffer Neighbours {
+    uint list[]; // by cells, the first of all particles, then the second of all
+} neighbours;
+
+layout(set = 0, binding = 13, std430) readonly buffer NeighbourCounts {
+    uint list[]; // of each particle's, or WALKS
+} neighbour_counts;
+
+// Length of a particle's list, and how many stretches of cells it walks over in its place.
+uvec2 reach_of(uint at) {
+    uint count = neighbour_counts.list[at];
+    return count == WALKS ? uvec2(0u, 9u) : uvec2(count, 0u);
+}
+
+uint neighbour_of(uint at, uint n) {
+    return neighbours.list[n * flow.listed + at];
+}
+
+// One of the nine around a particle.
+uvec2 nth_stretch(vec3 place_m, uint n) {
+    uvec2 stretch = stretch_at(place_m, int(n % 3u) - 1, int(n / 3u) - 1);
+    return uvec2(stretch.x, min(stretch.y, stretch.x + MOST));
+}

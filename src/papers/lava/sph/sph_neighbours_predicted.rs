@@ -1,0 +1,25 @@
+//! Pass `sph-neighbours-predicted` (chapter 9): lists of the particles within the kernel's radius, and a little farther, at the
+//! predicted places.
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass, whose lists take the place of those before.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_neighbours_predicted(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    [lists, counts]: [&Arc<Buffer>; 2],
+    predicted: &Arc<Buffer>,
+) -> Result<Pass, Error> {
+    over_cells("sph-neighbours-predicted", "lava/sph-neighbours-predicted.comp", sort)
+        .with("neighbours", lists)
+        .with("neighbour_counts", counts)
+        .with("predicted", predicted)
+        .build(shaders)
+}
