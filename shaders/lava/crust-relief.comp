@@ -14,6 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lava/bed.glsl"
 #include "lava/crust.glsl"
 #include "lava/hash.glsl"
+#include "lava/face.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres
@@ -89,7 +90,7 @@ Surface surface_at(vec2 share) {
             vec4 way_m = texelFetch(carried, at, 0);
             weights += weight;
             slopes += slope;
-            warmth += weight * vec2(heat.r, moved.z);
+            warmth += weight * vec2(heat.a, moved.z);
             speed += weight * moved.xy;
             speeding += slope * moved.xy;
             carried_m += weight * way_m;
@@ -190,6 +191,7 @@ void main() {
     float ground_m = bed_at(share).z;
     float relief_m = 0.0;
     float kelvin = surface.kelvin;
+    float glowing_k = face_k(kelvin, crust.radiance);
     if (surface.is_there && surface.lava_m > 0.0) {
         // Crust grows from nothing at the melt's temperature to all of itself at the solidus.
         float grown = clamp((crust.melt_k - kelvin) / (crust.melt_k - crust.solidus_k), 0.0, 1.0);
@@ -211,7 +213,7 @@ void main() {
             float gap = 1.0 - smoothstep(half_m - blurred_m, half_m, piece.to_edge_m);
             // Pieces are as much colder than the particles say as gaps are hotter.
             float piece_k = max((kelvin - gaps * surface.core_k) / (1.0 - gaps), crust.ambient_k);
-            kelvin = mix(piece_k, surface.core_k, gap);
+            glowing_k = mix(face_k(piece_k, crust.radiance), surface.core_k, gap);
             vec2 tilt = vec2(evenly(piece.particle ^ 0x9e3779b9u), evenly(piece.particle ^ 0x7f4a7c15u)) - 0.5;
             float raised = evenly(piece.particle ^ 0x94d049bbu) - 0.5;
             float edge = 1.0 - smoothstep(0.0, 0.2 * crust.piece_m, piece.to_edge_m);
@@ -222,6 +224,6 @@ void main() {
     }
     float height_m = ground_m + max(surface.lava_m + relief_m, min(surface.lava_m, 0.5 * crust.least_m));
     imageStore(heights, column, vec4(0.0, 0.0, 0.0, height_m));
-    imageStore(crust_temperatures, column, vec4(kelvin, surface.is_there ? 1.0 : 0.0, surface.share, 0.0));
+    imageStore(crust_temperatures, column, vec4(glowing_k, surface.is_there ? 1.0 : 0.0, surface.share, 0.0));
     imageStore(crust_carried, column, surface.carried_m);
 }

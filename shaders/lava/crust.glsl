@@ -9,5 +9,6 @@ layout(set = 0, binding = 11, std430) readonly buffer Crust {
     float melt_k; // where there is no crust
     float solidus_k; // where there is nothing else
     float ambient_k;
+    float radiance; // of a crust's face, as in face.glsl
     float least_m; // depth of lava that bears all of the crust's relief
 } crust;

@@ -1,6 +1,6 @@
 #version 450
 
-// Temperature of the surface in the middle of each column of the grid, and how far the rock has been carried: the particles' around it, by the kernel along x and z,
+// Temperature of the surface, and of what glows of it, in the middle of each column of the grid, and how far the rock has been carried: the particles' around it, by the kernel along x and z,
 // and by how far above or below the surface they lie, half the weight for each half distance of particles. They are taken
 // where the step has brought them, from the cells in which it began.
 
@@ -9,6 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lava/sph.glsl"
+#include "lava/face.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres
@@ -27,6 +28,10 @@ layout(set = 0, binding = 8, std430) readonly buffer Carried {
 } carried;
 
 layout(set = 0, binding = 9, rgba32f) uniform image2D surface_carried;
+
+layout(set = 0, binding = 10, std430) readonly buffer Face {
+    float radiance;
+} face;
 
 const float HALVES_A_SUPPORT = 4.8; // the kernel's radius is 2.4 distances of particles
 const float MOST_HALVINGS = 40.0;
@@ -60,6 +65,8 @@ void main() {
         }
     }
     bool is_there = weights > 0.0;
-    imageStore(temperatures, column, vec4(is_there ? vec2(sum / weights, 1.0) : vec2(0.0), flow.share, 0.0));
+    float kelvin = is_there ? sum / weights : 0.0;
+    vec2 found = is_there ? vec2(face_k(kelvin, face.radiance), 1.0) : vec2(0.0);
+    imageStore(temperatures, column, vec4(found, flow.share, kelvin));
     imageStore(surface_carried, column, is_there ? carried_m / weights : vec4(0.0));
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::lava::reference::{self, Heat as Oracle, cooled_slab, light, melt_viscosity, yield_stress};
+use fumarole::papers::lava::reference::{self, Heat as Oracle, cooled_slab, crust_face, light, melt_viscosity, yield_stress};
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
     Bed, Flow, Heat, Parameters, Particles, Rheology, Shading, Sides, SurfaceDraw, SurfaceKind, Variant,
@@ -371,6 +371,35 @@ fn the_surface_is_as_hot_as_its_particles() {
     });
 }
 
+/// What glows is the face of a crust: as hot as the particles where they have lost nothing, hundreds of kelvin colder where they have lost little.
+#[test]
+fn the_face_of_a_crust_glows() {
+    gpu_test(|device| {
+        let heat = Heat { emissivity: 0.9, crust_w_mk: 1.5, ambient_k: 400.0, ..hot() };
+        let parameters = Parameters { surface: SurfaceKind::Crossing, border_m: 0.0, ..with_heat(flowing(), heat) };
+        let oracle = oracle_of(&parameters);
+        let spacing = Scale::of(&parameters).spacing_m;
+        let mut lava = variant_of(device, Variant::GpuDriven, &parameters, &half_cold(&parameters));
+        draw(device, &mut lava, 4);
+        let found: Vec<[f32; 4]> = texels(device, &lava.surface_temperature.as_ref().unwrap().temperatures);
+        let (mut covered, mut off, mut range) = (0, 0.0f64, (f64::MAX, 0.0f64));
+        for found in found.iter().filter(|found| found[1] > 0.0) {
+            let [face, _, _, kelvin] = found.map(f64::from);
+            let expected = crust_face(&oracle, 1.5, 1423.0, spacing, kelvin);
+            covered += 1;
+            off = off.max((face - expected).abs());
+            range = (range.0.min(face / kelvin), range.1.max(face / kelvin));
+        }
+        println!("{covered} columns off by {off} K, {range:?}");
+        assert!(off < 0.5 && covered > 40 && range.0 < 0.75, "{off} {covered} {range:?}");
+    });
+    let plain = oracle_of(&with_heat(flowing(), hot()));
+    // Through 2 cm of crust come 37.9 kW/m2, which a face of 918.2 K radiates.
+    let lost = 0.5 * 0.02 * (1423.0 - 918.2) / 0.04;
+    let face = crust_face(&plain, 1.5, 1423.0, 0.04, 1423.0 - lost);
+    assert!((face - 918.2).abs() < 0.1, "{face}");
+}
+
 #[test]
 fn numbers_of_heat_that_cannot_be_are_refused() {
     let basalt = with_heat(flowing(), hot());
@@ -383,6 +412,7 @@ fn numbers_of_heat_that_cannot_be_are_refused() {
         ("emissivity", heat(Heat { emissivity: 1.1, ..hot() })),
         ("conductivity", heat(Heat { conductivity_w_mk: 1000.0, ..hot() })),
         ("conductivity", heat(Heat { conductivity_w_mk: f32::NAN, ..hot() })),
+        ("crust-conductivity", heat(Heat { crust_w_mk: -1.0, ..hot() })),
         ("heat-capacity", heat(Heat { capacity_j_kgk: 0.0, ..hot() })),
         ("solidus", heat(Heat { solidus_k: 1200.0, ..constant.clone() })),
         ("latent-heat", heat(Heat { latent_j_kg: -1.0, ..hot() })),

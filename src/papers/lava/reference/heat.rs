@@ -194,6 +194,25 @@ pub fn cooled_slab(heat: &Heat, depth: f64, cells: usize, kelvin: f64, time: f64
     slab
 }
 
+/// Temperature of the face of a crust that conducts so well, on a particle so long and of that mean temperature: that of the thickness at which the
+/// crust has lost what the particle has.
+pub fn crust_face(heat: &Heat, conductivity: f64, melt: f64, spacing: f64, kelvin: f64) -> f64 {
+    let halved = |mut low: f64, mut high: f64, is_below: &dyn Fn(f64) -> bool| {
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            if is_below(middle) { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    };
+    // Where what comes through the crust is what its face radiates.
+    let face = |thickness: f64| {
+        let radiated = |t: f64| heat.emissivity * STEFAN_BOLTZMANN * (t.powi(4) - heat.ambient.powi(4));
+        halved(heat.ambient, melt, &|t| radiated(t) < conductivity * (melt - t) / thickness)
+    };
+    let lost = |thickness: f64| 0.5 * thickness * (melt - face(thickness));
+    face(halved(0.0, 1000.0 * spacing, &|thickness| lost(thickness) < spacing * (melt - kelvin))).min(kelvin)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -23,6 +23,6 @@ pub use crust::{Columns, Crust, Texel, fold_steepness};
 pub use density::{Grid, density};
 pub use fluid::Fluid;
 pub use folding::{fold_growth, fold_length};
-pub use heat::{Heat, cooled_slab, melt_viscosity, yield_stress};
+pub use heat::{Heat, cooled_slab, crust_face, melt_viscosity, yield_stress};
 pub use splats::{Pixel, Splats, toned};
 pub use surface::Surface;

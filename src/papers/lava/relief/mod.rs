@@ -35,6 +35,7 @@ host_block! {
         melt_k: f32,
         solidus_k: f32,
         ambient_k: f32,
+        radiance: f32,
         least_m: f32,
     }
 }
@@ -92,6 +93,7 @@ impl Relief {
             melt_k: heat.melt_k,
             solidus_k: heat.solidus_k,
             ambient_k: heat.ambient_k,
+            radiance: heat.crust_radiance(spacing_m) as f32,
             least_m: (LEAST_DEPTH * spacing_m) as f32,
         };
         let crust = context.upload("crust", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&constants))?;

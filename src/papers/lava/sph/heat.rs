@@ -45,6 +45,9 @@ pub struct Heat {
     pub solidus_k: f32,
     /// Most viscosity that crust and cold lava have, pascal seconds, at least that of the melt and at most 1e9.
     pub crust_pa_s: f32,
+    /// Thermal conductivity of the crust that has grown on the outermost particles, watts per metre and kelvin, 0 to 1000; at 0 the surface
+    /// glows as they do.
+    pub crust_w_mk: f32,
 }
 
 impl Default for Heat {
@@ -60,6 +63,7 @@ impl Default for Heat {
             rheology: Rheology::Constant,
             solidus_k: 1273.0,
             crust_pa_s: 2000.0,
+            crust_w_mk: 0.0,
         }
     }
 }
@@ -125,6 +129,12 @@ impl Heat {
                 .help("With basalt: most viscosity that crust and cold lava have, at least the melt's; a step's iterations grow with its root")
                 .section("9")
                 .cost(Cost::Buffers),
+            Parameter::new("crust-conductivity", field!(Heat.crust_w_mk))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("watts per metre and kelvin")
+                .help("With sph: thermal conductivity of the crust on the outermost particles, whose face is what glows; basalt's is 1.5; at 0 the surface is as hot as they are")
+                .section("9")
+                .cost(Cost::Buffers),
         ]
     }
 
@@ -138,6 +148,13 @@ impl Heat {
     pub fn radiance(&self, spacing_m: f64) -> f64 {
         let conductance_w_m2k = 2.0 * f64::from(self.conductivity_w_mk) / spacing_m;
         if conductance_w_m2k > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k } else { 0.0 }
+    }
+
+    /// What a crust's face radiates over what reaches it, times the crust's thickness squared, for each kelvin that the particle below has lost,
+    /// per K^3: a crust through which the temperature changes evenly, and a particle whose loss is the crust's. 0 without a crust.
+    pub fn crust_radiance(&self, spacing_m: f64) -> f64 {
+        let lost_m2k_w = 2.0 * spacing_m / f64::from(self.crust_w_mk);
+        if self.crust_w_mk > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN * lost_m2k_w } else { 0.0 }
     }
 
     /// Latent heat over the heat capacity, and what lies between solidus and liquidus, both in kelvin.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::super::parameters::Parameters;
 use super::super::targets::{Context, FLOATS};
 use super::rock::Layings;
 use super::{FlowConstants, Sph};
@@ -13,7 +14,8 @@ use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Pass};
 pub struct SurfaceTemperature {
     pass: Pass,
     constants: FlowConstants,
-    /// Kelvin in red; 1 in green where any particle is near the column, 0 elsewhere; in blue the share of the rock's first laying.
+    /// Kelvin of what glows in red; 1 in green where any particle is near the column, 0 elsewhere; in blue the share of the rock's first laying;
+    /// in alpha the particles' kelvin.
     pub temperatures: Arc<ImageView>,
     /// Metres along x and z that the rock of either laying has been carried.
     pub carried: Arc<ImageView>,
@@ -31,6 +33,9 @@ impl SurfaceTemperature {
             Image::new(context.device(), desc.usage(usage))?.view()
         };
         let (temperatures, carried) = (stored("surface-temperatures")?, stored("surface-carried")?);
+        let Parameters { particles, flow, .. } = context.parameters;
+        let radiance = flow.heat.crust_radiance(flow.spacing_m(*particles)) as f32;
+        let face = context.upload("face", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&radiance))?;
         let [xs, ys, zs] = &sph.sort.places;
         let pass = Pass::compute("surface-temperature", "9", "lava/surface-temperature.comp")
             .constants::<FlowConstants>()
@@ -44,6 +49,7 @@ impl SurfaceTemperature {
             .with("temperatures", &temperatures)
             .with("carried", &sph.rock.by_cells)
             .with("surface_carried", &carried)
+            .with("face", &face)
             .build(context.shaders)?;
         Ok(SurfaceTemperature { pass, constants: sph.constants, temperatures, carried })
     }
