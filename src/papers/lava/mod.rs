@@ -50,6 +50,7 @@ mod read_positions;
 pub mod reference;
 pub mod relief;
 mod rock;
+mod rock_source;
 mod scene;
 pub mod setup;
 pub mod sph;
@@ -85,6 +86,7 @@ pub use self::parameters::{Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, 
 pub use self::placement::{Object, Place};
 pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
+pub use self::rock_source::RockSource;
 pub use self::scene::{FluidSheet, Sheet, depth_range_m};
 pub use self::sph::Sph;
 pub use self::sph::bed::Bed;

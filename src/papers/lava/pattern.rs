@@ -1,4 +1,4 @@
-//! The built-in rock: plates of crust with cracks between them, made from seeded noise that repeats at the edges.
+//! The rocks that we make from seeded noise that repeats at the edges: plates of crust with cracks between them, and the grain of a crust.
 
 use std::sync::OnceLock;
 
@@ -13,14 +13,26 @@ const TABLE: usize = 4096;
 const PLATES: u32 = 9;
 
 impl Rock {
-    /// The built-in rock, 512 x 512 texels. It is made once.
+    /// Plates of crust with bright cracks between them, 512 x 512 texels. They are made once.
     pub fn built_in() -> &'static Rock {
         static ROCK: OnceLock<Rock> = OnceLock::new();
-        ROCK.get_or_init(|| {
-            let noise = Noise::new();
-            let texels = (0..SIZE * SIZE).map(|i| noise.texel(i % SIZE, i / SIZE)).collect();
-            Rock { width: SIZE, height: SIZE, texels }
-        })
+        ROCK.get_or_init(|| Rock::made_by(Noise::plates))
+    }
+
+    /// The grain of a crust that has no cracks, of as many texels. It is made once.
+    pub fn crust() -> &'static Rock {
+        static ROCK: OnceLock<Rock> = OnceLock::new();
+        ROCK.get_or_init(|| Rock::made_by(Noise::crust))
+    }
+
+    fn made_by(value: fn(&Noise, [f32; 2]) -> f32) -> Rock {
+        let noise = Noise::new();
+        let texel = |i: u32| {
+            let value = value(&noise, [i % SIZE, i / SIZE].map(|c| (c as f32 + 0.5) / SIZE as f32));
+            let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
+            [r, g, b, 255]
+        };
+        Rock { width: SIZE, height: SIZE, texels: (0..SIZE * SIZE).map(texel).collect() }
     }
 }
 
@@ -85,10 +97,15 @@ impl Noise {
         nearest[1] - nearest[0]
     }
 
-    fn texel(&self, column: u32, row: u32) -> [u8; 4] {
-        let place = [column, row].map(|c| (c as f32 + 0.5) / SIZE as f32);
-        // Noise gathers around its mean: stretched, it fills the range.
-        let stretched = |value: f32, contrast: f32| (0.5 + contrast * (value - 0.5)).clamp(0.0, 1.0);
+    /// Lighter and darker, with small dark pits, which are burst bubbles.
+    fn crust(&self, place: [f32; 2]) -> f32 {
+        let broad = stretched(self.octaves(place, 4, 6, 70), 1.8);
+        let grain = stretched(self.octaves(place, 40, 3, 80), 2.2);
+        let pits = 1.0 - stretched(self.smooth(place, 56, 90), 3.0);
+        (0.5 + 0.3 * broad + 0.2 * grain) * (1.0 - 0.5 * pits * pits * pits)
+    }
+
+    fn plates(&self, place: [f32; 2]) -> f32 {
         // Plates do not break along straight lines.
         let bend = |layer| 0.16 * (self.octaves(place, 5, 6, layer) - 0.5);
         let bent = [place[0] + bend(10), place[1] + bend(20)];
@@ -102,10 +119,13 @@ impl Noise {
         let cracks = crack(0.12 + 0.32 * grain, PLATES, 30).max(0.5 * crack(0.1 + 0.3 * crust, 2 * PLATES, 40));
         // Lighter and darker crust, grainy; where it is torn the rock is fresh and bright.
         let crust = 0.05 + (0.1 + 0.45 * crust * crust) * (0.25 + 1.5 * grain * grain);
-        let value = (crust + (1.0 - crust) * cracks).min(1.0);
-        let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
-        [r, g, b, 255]
+        (crust + (1.0 - crust) * cracks).min(1.0)
     }
+}
+
+/// Noise gathers around its mean: stretched, it fills the range.
+fn stretched(value: f32, contrast: f32) -> f32 {
+    (0.5 + contrast * (value - 0.5)).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -113,15 +133,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_built_in_rock_repeats_without_a_seam() {
-        let rock = Rock::built_in();
-        assert_eq!(rock.validate(), Ok(()));
-        let at = |x: u32, y: u32| i32::from(rock.texels[(y % SIZE * SIZE + x % SIZE) as usize][0]);
-        let step = |x: u32, y: u32| (at(x + 1, y) - at(x, y)).abs() + (at(y, x + 1) - at(y, x)).abs();
-        let mean = |x: u32| (0..SIZE).map(|y| step(x, y)).sum::<i32>() as f32 / SIZE as f32;
-        let inside = (0..SIZE - 1).map(mean).fold(0.0, f32::max);
-        assert!(mean(SIZE - 1) <= inside, "{} {inside}", mean(SIZE - 1));
-        let dark = rock.texels.iter().filter(|t| t[0] < 128).count();
-        assert!(dark > rock.texels.len() / 3 && dark < rock.texels.len(), "{dark}");
+    fn rocks_repeat_without_a_seam() {
+        for rock in [Rock::built_in(), Rock::crust()] {
+            assert_eq!(rock.validate(), Ok(()));
+            let at = |x: u32, y: u32| i32::from(rock.texels[(y % SIZE * SIZE + x % SIZE) as usize][0]);
+            let step = |x: u32, y: u32| (at(x + 1, y) - at(x, y)).abs() + (at(y, x + 1) - at(y, x)).abs();
+            let mean = |x: u32| (0..SIZE).map(|y| step(x, y)).sum::<i32>() as f32 / SIZE as f32;
+            let inside = (0..SIZE - 1).map(mean).fold(0.0, f32::max);
+            assert!(mean(SIZE - 1) <= inside, "{} {inside}", mean(SIZE - 1));
+        }
+        let dark = |rock: &Rock| rock.texels.iter().filter(|t| t[0] < 128).count();
+        let plates = Rock::built_in();
+        assert!(dark(plates) > plates.texels.len() / 3 && dark(plates) < plates.texels.len(), "{}", dark(plates));
+        // No cracks: neither the brightest nor the darkest value.
+        let crust = Rock::crust().texels.iter().map(|texel| texel[0]);
+        let (darkest, brightest) = crust.fold((255, 0), |(low, high), value| (value.min(low), value.max(high)));
+        assert!(darkest > 40 && brightest > 180, "{darkest} {brightest}");
     }
 }

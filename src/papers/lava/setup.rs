@@ -1,7 +1,6 @@
 //! A user's set-up, its scene, and the results of its runs.
 
 use std::borrow::Cow;
-use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
@@ -10,7 +9,6 @@ use super::experiments::{self, Options};
 use super::kinds;
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
-use crate::image::read_png_within;
 use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
@@ -25,7 +23,7 @@ use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{
-    Bed, DRAWN, Kept, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Sides, Simulation, Variant,
+    Bed, DRAWN, Kept, Lava, NEEDS, Object, Parameters, Particles, Rock, RockSource, Shading, Sides, Simulation, Variant,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMapSource, Mesh, promised_triangles};
@@ -35,8 +33,8 @@ use crate::scene::{HeightMapSource, Mesh, promised_triangles};
 pub struct Setup {
     /// The numbers.
     pub parameters: Parameters,
-    /// PNG of the rock texture; the built-in one without.
-    pub rock: Option<PathBuf>,
+    /// The rock texture.
+    pub rock: RockSource,
     /// Height map of the ground under a fluid; without one the space's floor.
     pub bed: Option<HeightMapSource>,
     /// Polygon meshes in the simulation space.
@@ -51,7 +49,7 @@ impl Default for Setup {
     fn default() -> Self {
         Setup {
             parameters: Parameters::default(),
-            rock: None,
+            rock: RockSource::Plates,
             bed: None,
             objects: Vec::new(),
             crease_deg: CREASE_DEG,
@@ -121,7 +119,7 @@ impl Setup {
 pub struct Scene {
     /// As they start.
     pub particles: Particles,
-    /// The built-in one or that of a file.
+    /// One of the two that we make, or that of a file.
     pub rock: Cow<'static, Rock>,
     /// In the simulation space, metres.
     pub objects: Vec<Mesh>,
@@ -139,16 +137,7 @@ impl Study for Setup {
     /// [`Error::Image`].
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        let rock = match &self.rock {
-            None => Cow::Borrowed(Rock::built_in()),
-            Some(path) => {
-                let picture = read_png_within(path, Rock::MAX_SIDE)?;
-                let texels = picture.pixels().as_chunks().0.to_vec();
-                let rock = Rock { width: picture.width(), height: picture.height(), texels };
-                rock.validate().map_err(|e| Error::Input(format!("reading the rock {}: {e}", path.display())))?;
-                Cow::Owned(rock)
-            }
-        };
+        let rock = self.rock.load()?;
         let space_m = self.parameters.space_m;
         let objects =
             self.objects.iter().map(|object| object.load(space_m, self.crease_deg)).collect::<Result<_, _>>()?;
@@ -233,9 +222,11 @@ impl Study for Setup {
         let numbers = Parameters::declared().into_iter();
         let scene = [
             Parameter::new("rock", field!(Setup.rock))
-                .help("Picture of the rock that is laid over the lava, PNG, at least 2 x 2 texels")
+                .help(
+                    "Picture of the rock that is laid over the lava: plates with bright cracks between them, or the grain of a crust \
+                     without any: plates, crust, or a PNG file of at least 2 x 2 texels",
+                )
                 .section("7.2")
-                .default_text("the shipped one")
                 .cost(Cost::Buffers),
             Parameter::new("bed", field!(Setup.bed))
                 .help(
