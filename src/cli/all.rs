@@ -10,8 +10,7 @@ use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::report;
-use super::spelling;
-use super::watch::{interrupted, watched};
+use super::watch::interrupted;
 use crate::measure::Error;
 use crate::measure::bench::{Bench, load};
 use crate::measure::limits;
@@ -186,14 +185,10 @@ fn measure_quick<S: Study>(
     let loaded = load(study)?;
     let limits = measured.limits.as_ref();
     let bench = Bench { study, loaded: &loaded, variants, schedule: SCHEDULE, limits };
-    let found = match watched(output.quiet, paper, |watch| bench.measure(machine, watch)) {
+    let (mut runs, traces) = match bench::measured(&bench, machine, output) {
         Err(Error::Interrupted) if !measured.runs.is_empty() => return Ok(()),
         found => found?,
     };
-    let (mut runs, traces): (Vec<Run>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
-    for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
-        *warning = spelling::options(warning);
-    }
     let pictures = pictures::<S>(&output.out);
     for (index, ((&variant, picture), run)) in variants.iter().zip(&pictures).zip(&mut runs).enumerate() {
         if index > 0 && interrupted().load(Ordering::Relaxed) {

@@ -12,6 +12,7 @@ use super::spelling;
 use super::watch::{interrupted, patiently, watched};
 use crate::content;
 use crate::gpu::{Mode, RenderDoc};
+use crate::image::suffixed;
 use crate::measure::bench::{Bench, Loaded, build, load_for};
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::picture;
@@ -80,11 +81,7 @@ fn measure<S: Study>(
     };
     let limits = measure.limits(&mut machine)?;
     let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };
-    let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(&mut machine, watch))?;
-    let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
-    for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
-        *warning = spelling::options(warning);
-    }
+    let (mut runs, traces) = measured(&bench, &mut machine, output)?;
     // What fails from here on throws no measurement away.
     let mut failed = None;
     let mut without = |what: &str, run: &mut Run, failure: Failure| {
@@ -128,6 +125,23 @@ fn measure<S: Study>(
         }
     }
     Ok((Record::new(machine.environment(), environment::command(), runs), traces, failed))
+}
+
+/// Measures under a bar of progress; warnings name options.
+///
+/// # Errors
+/// As [`Bench::measure`].
+pub fn measured<S: Study>(
+    bench: &Bench<'_, S>,
+    machine: &mut Machine,
+    output: &OutputArgs,
+) -> Result<(Vec<Run>, Vec<TraceRun>), Error> {
+    let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(machine, watch))?;
+    let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
+    for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
+        *warning = spelling::options(warning);
+    }
+    Ok((runs, traces))
 }
 
 /// The variants with a pass of that name.
@@ -184,19 +198,8 @@ fn file_sha256(path: &Path) -> Result<String, Failure> {
 
 /// Files of the variants' pictures: the first gets the name that was given, the others' have the variant before its ending.
 pub fn picture_files<V: Variant>(named: &Path, variants: &[V]) -> Vec<PathBuf> {
-    let of = |(index, variant): (usize, &V)| {
-        if index == 0 {
-            return named.to_owned();
-        }
-        let mut name = named.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{}", variant.as_str()));
-        if let Some(ending) = named.extension() {
-            name.push(".");
-            name.push(ending);
-        }
-        named.with_file_name(name)
-    };
-    variants.iter().enumerate().map(of).collect()
+    let others = variants.iter().skip(1).map(|variant| suffixed(named, &format!("-{}", variant.as_str())));
+    variants.first().map(|_| named.to_owned()).into_iter().chain(others).collect()
 }
 
 /// Renders a frame after the measurement and writes it.

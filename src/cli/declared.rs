@@ -179,7 +179,7 @@ fn options<S: 'static>(parameters: &[Parameter<S>], default: &S) -> Vec<Arg> {
 }
 
 /// Names of the opposites of flags.
-pub fn opposite(name: &str) -> String {
+fn opposite(name: &str) -> String {
     format!("no-{name}")
 }
 
@@ -231,21 +231,22 @@ fn help<S: 'static>(parameter: &Parameter<S>, default: &S) -> String {
 /// Sets the parameters that were typed, in the order in which they are declared.
 fn read<S: 'static>(matches: &ArgMatches, parameters: &[Parameter<S>], setup: &mut S) -> Result<(), Failure> {
     for parameter in parameters {
-        let name = parameter.name;
-        let result = if parameter.shape().is_flag {
-            let flag = |name: &str| matches.try_get_one::<bool>(name).ok().flatten() == Some(&true);
-            match (flag(name), flag(&opposite(name))) {
-                (true, _) => parameter.set(setup, &[OsStr::new("true")]),
-                (_, true) => parameter.set(setup, &[OsStr::new("false")]),
-                _ => Ok(()),
-            }
-        } else {
-            let Ok(Some(values)) = matches.try_get_many::<OsString>(name) else { continue };
-            parameter.set(setup, &values.map(OsString::as_os_str).collect::<Vec<_>>())
-        };
-        result.map_err(|reason| Failure::Input(format!("--{name}: {reason}")))?;
+        let Some(values) = typed(matches, parameter) else { continue };
+        let set = parameter.set(setup, &values);
+        set.map_err(|reason| Failure::Input(format!("--{}: {reason}", parameter.name)))?;
     }
     Ok(())
+}
+
+/// The values of a parameter that were typed; `true` or `false` of a flag.
+pub fn typed<'a, S: 'static>(matches: &'a ArgMatches, parameter: &Parameter<S>) -> Option<Vec<&'a OsStr>> {
+    if parameter.shape().is_flag {
+        let flag = |name: &str| matches.try_get_one::<bool>(name).ok().flatten() == Some(&true);
+        let on = flag(parameter.name);
+        return (on || flag(&opposite(parameter.name))).then(|| vec![OsStr::new(if on { "true" } else { "false" })]);
+    }
+    let values = matches.try_get_many::<OsString>(parameter.name).ok().flatten()?;
+    Some(values.map(OsString::as_os_str).collect())
 }
 
 /// Names that were typed.

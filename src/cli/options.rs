@@ -1,7 +1,9 @@
 //! Options that every paper has, as they were typed.
 
 use std::ffi::{OsStr, OsString};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
 
@@ -50,6 +52,12 @@ pub fn split(text: &OsStr, separator: u8) -> Vec<OsString> {
     #[cfg(not(unix))]
     text.to_str()
         .map_or_else(|| vec![text.to_owned()], |text| text.split(char::from(separator)).map(OsString::from).collect())
+}
+
+/// Parses a number of a range; `what` tells of it where the text is none.
+pub fn number_in<T: FromStr + PartialOrd>(text: &str, range: RangeInclusive<T>, what: &str) -> Result<T, String> {
+    let number = text.parse::<T>().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("{text:?} is not {what}"))
 }
 
 /// Parses `5%` or `0.05` as a fraction.
@@ -153,10 +161,7 @@ pub struct MeasureArgs {
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (0.0..=3600.0).contains(&value) => Ok(value),
-        _ => Err(format!("{text:?} is not a time of 0 to 3600 seconds")),
-    }
+    number_in(text, 0.0..=3600.0, "a time of 0 to 3600 seconds")
 }
 
 impl MeasureArgs {

@@ -1,5 +1,6 @@
 //! Writing what a measurement leaves behind.
 
+use std::fs;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -165,6 +166,15 @@ pub fn save(output: &OutputArgs, path: &Path, bytes: &[u8]) -> Result<(), Failur
     write(path, bytes)?;
     wrote(output, path);
     Ok(())
+}
+
+/// What lies in a folder, by name.
+pub fn listed(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |e: io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
+    let paths = |entries: fs::ReadDir| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
+    let mut paths = fs::read_dir(folder).and_then(paths).map_err(failed)?;
+    paths.sort();
+    Ok(paths)
 }
 
 /// Says on standard error that a file was written.

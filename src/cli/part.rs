@@ -1,6 +1,5 @@
 //! Parts of a film: which frames and rows a process draws, and what stands beside a finished part.
 
-use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +11,7 @@ use super::options::MachineArgs;
 use super::outcome;
 use crate::content;
 use crate::file;
-use crate::image::{Rgba8, read_png};
+use crate::image::{Rgba8, read_png, suffixed};
 use crate::measure::Variant;
 use crate::measure::bench::inputs;
 use crate::measure::machine::Machine;
@@ -167,13 +166,7 @@ pub fn rows_suffix([first, end]: [u32; 2]) -> String {
 
 /// `pool-0007.rows-0-9.png` for rows of `pool-0007.png`.
 pub fn of_rows(picture: &Path, rows: [u32; 2]) -> PathBuf {
-    let mut name = picture.file_stem().unwrap_or_default().to_owned();
-    name.push(rows_suffix(rows));
-    if let Some(ending) = picture.extension() {
-        name.push(".");
-        name.push(ending);
-    }
-    picture.with_file_name(name)
+    suffixed(picture, &rows_suffix(rows))
 }
 
 /// The file beside a picture.
@@ -205,12 +198,8 @@ pub fn read(path: &Path) -> Result<Part, Failure> {
 
 /// The parts of a folder, with their places.
 pub fn in_folder(folder: &Path) -> Result<Vec<(PathBuf, Part)>, Failure> {
-    let failed = |e: std::io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
-    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(failed)?;
     let is_part = |path: &PathBuf| path.to_string_lossy().ends_with(ENDING);
-    let mut paths: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(is_part).collect();
-    paths.sort();
-    paths.into_iter().map(|path| read(&path).map(|part| (path, part))).collect()
+    outcome::listed(folder)?.into_iter().filter(is_part).map(|path| read(&path).map(|part| (path, part))).collect()
 }
 
 #[cfg(test)]

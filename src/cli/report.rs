@@ -110,11 +110,7 @@ fn write(contents: &Contents, output: &Path, quiet: bool) -> Result<(), Failure>
 /// All records, tables, comparisons and plots of a folder by their names; what `ab` left there is compared. What is ours and
 /// is not shown is named in a warning.
 fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
-    let failed = |e: std::io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
-    let mut files = fs::read_dir(folder)
-        .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>())
-        .map_err(failed)?;
-    files.sort();
+    let files = outcome::listed(folder)?;
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
     let mut verdicts = None;
     let mut foreign: BTreeMap<String, Vec<String>> = BTreeMap::new();

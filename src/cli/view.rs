@@ -7,11 +7,11 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 
 use super::failure::Failure;
-use super::options::MachineArgs;
+use super::listed;
+use super::options::{MachineArgs, number_in};
 use super::watch::on_interruption;
 use crate::gpu::swapchain::PresentMode;
-use crate::measure::study::{Study, Visitor};
-use crate::papers;
+use crate::measure::study::Study;
 use crate::window;
 
 /// The window itself.
@@ -63,10 +63,7 @@ impl PresentModeArg {
 }
 
 fn parse_scale(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
-        _ => Err(format!("{text:?} is not a scale of 0.5 to 4")),
-    }
+    number_in(text, 0.5..=4.0, "a scale of 0.5 to 4")
 }
 
 /// The verb, of a command with the options of the scene and of variants.
@@ -89,10 +86,8 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     // Groups of options have names too.
     let paper = super::declared::command::<S>();
     let is_option = |id: &str| paper.find_subcommand("view").is_some_and(|view| is_of(view, id));
-    let mut names = Names(Vec::new());
-    let Ok(()) = papers::each(&mut names);
     let options = window::Options {
-        papers: names.0,
+        papers: listed().iter().map(|paper| paper.name).collect(),
         paper: S::PAPER.to_owned(),
         arguments: typed(matches, |id| is_option(id) && !is_of(&of_machine, id) && !is_of(&of_window, id)),
         common: typed(matches, |id| is_of(&of_machine, id)),
@@ -131,31 +126,18 @@ fn typed(matches: &ArgMatches, is_wanted: impl Fn(&str) -> bool) -> Vec<OsString
     arguments
 }
 
-/// Names of the papers.
-struct Names(Vec<&'static str>);
-
-impl Visitor for Names {
-    type Error = std::convert::Infallible;
-
-    fn visit<S: Study>(&mut self) -> Result<(), Self::Error> {
-        self.0.push(S::PAPER);
-        Ok(())
-    }
-}
-
 /// `fumarole view [PAPER] ...` as `fumarole PAPER view ...`; without a paper the first of the list.
 pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
     if arguments.get(1).is_none_or(|verb| verb != "view") {
         return arguments;
     }
-    let mut names = Names(Vec::new());
-    let Ok(()) = papers::each(&mut names);
+    let papers = listed();
     let mut rest = arguments.into_iter();
     let program = rest.next().unwrap_or_default();
     let verb = rest.next().unwrap_or_default();
     let mut rest = rest.peekable();
-    let named = rest.next_if(|argument| names.0.iter().any(|name| argument == name));
-    let first = names.0.first().copied().unwrap_or_default();
+    let named = rest.next_if(|argument| papers.iter().any(|paper| argument == paper.name));
+    let first = papers.first().map_or("", |paper| paper.name);
     let paper = named.unwrap_or_else(|| OsString::from(first));
     [program, paper, verb].into_iter().chain(rest).collect()
 }

@@ -1,13 +1,12 @@
 //! `worker`: what the window starts to draw for it. It is no verb of the user's.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::builder::OsStringValueParser;
-use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
-use super::declared::opposite;
+use super::declared;
 use super::failure::Failure;
 use super::options::MachineArgs;
 use crate::measure::study::Study;
@@ -23,31 +22,16 @@ pub fn command(scene: Command) -> Command {
 pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let machine = MachineArgs::from_arg_matches(matches)?.resolve(0);
     let path = |name: &str| matches.get_one::<OsString>(name).map(PathBuf::from);
+    let typed = S::parameters().into_iter().filter_map(|parameter| {
+        let values = declared::typed(matches, &parameter)?.into_iter().map(OsStr::to_owned).collect();
+        Some(Typed { name: parameter.name.to_owned(), values })
+    });
     let start = Start {
         preset: matches.try_get_one::<String>("preset").ok().flatten().cloned(),
-        typed: typed::<S>(matches),
+        typed: typed.collect(),
         variants: matches.get_many::<String>("variant").into_iter().flatten().cloned().collect(),
         machine,
         exchange: path("exchange").unwrap_or_default(),
     };
     Ok(worker::run::<S>(start)?)
-}
-
-/// The parameters that were typed, as they were typed.
-fn typed<S: Study>(matches: &ArgMatches) -> Vec<Typed> {
-    let is_typed = |name: &str| matches.value_source(name) == Some(ValueSource::CommandLine);
-    let value = |parameter: &crate::measure::parameter::Parameter<S>| {
-        let name = parameter.name;
-        if parameter.shape().is_flag {
-            let on = is_typed(name) && matches.get_flag(name);
-            let opposite = opposite(name);
-            let off = is_typed(&opposite) && matches.get_flag(&opposite);
-            return (on || off).then(|| vec![OsString::from(if on { "true" } else { "false" })]);
-        }
-        is_typed(name).then(|| matches.get_many::<OsString>(name).into_iter().flatten().cloned().collect())
-    };
-    let parameters = S::parameters();
-    let each =
-        parameters.iter().map(|parameter| Some(Typed { name: parameter.name.to_owned(), values: value(parameter)? }));
-    each.flatten().collect()
 }

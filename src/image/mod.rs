@@ -92,8 +92,13 @@ pub fn write(path: &Path, raster: &Raster) -> Result<Option<Ramp>, Error> {
 
 /// The file of one of several frames: `picture.png` for frame 7 is `picture-0007.png`.
 pub fn numbered(path: &Path, number: u32) -> PathBuf {
+    suffixed(path, &format!("-{number:04}"))
+}
+
+/// The file with a suffix before its ending.
+pub fn suffixed(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(format!("-{number:04}"));
+    name.push(suffix);
     if let Some(ending) = path.extension() {
         name.push(".");
         name.push(ending);

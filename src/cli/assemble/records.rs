@@ -1,7 +1,6 @@
 //! Records of the shards of a measurement, put together: of `stress`, of `ab` and of experiments.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::super::failure::Failure;
@@ -40,11 +39,7 @@ pub struct Shards {
 pub fn in_folders(folders: &[PathBuf]) -> Result<Vec<Shards>, Failure> {
     let mut found: BTreeMap<String, Shards> = BTreeMap::new();
     for folder in folders {
-        let failed = |e: std::io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
-        let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(failed)?;
-        let mut paths: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
-        paths.sort();
-        for path in paths {
+        for path in outcome::listed(folder)? {
             let Some(stem) = stem(&path) else { continue };
             let part = Part::read(&path)?;
             let Some([number, count]) = part.shard() else {

@@ -17,7 +17,7 @@ use self::climber::Children;
 use self::record::File;
 pub use self::step::StepArgs;
 use super::failure::Failure;
-use super::options::MachineArgs;
+use super::options::{MachineArgs, number_in};
 use super::outcome;
 use super::processes::without;
 use super::watch::interrupted;
@@ -129,17 +129,11 @@ impl Until {
 }
 
 fn parse_factor(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(factor) if (1.05..=100.0).contains(&factor) => Ok(factor),
-        _ => Err(format!("{text:?} is not a factor of 1.05 to 100")),
-    }
+    number_in(text, 1.05..=100.0, "a factor of 1.05 to 100")
 }
 
 fn parse_budget(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if (1.0..=1e6).contains(&seconds) => Ok(seconds),
-        _ => Err(format!("{text:?} is not a time of 1 to 1000000 seconds")),
-    }
+    number_in(text, 1.0..=1e6, "a time of 1 to 1000000 seconds")
 }
 
 /// Seconds of a paper without `--budget`.
