@@ -6,14 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fumarole::papers::burning;
-use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, load_voxels, world_file};
+use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, RowSource, Rows, load_voxels, world_file};
 use fumarole::{cli, image, report, shader_build};
 
 /// A reader.
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 24] = [
+pub const ALL: [(&str, Target); 25] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -22,7 +22,8 @@ pub const ALL: [(&str, Target); 24] = [
     ("asc", |data| height_map(&[("a.asc", data)])),
     ("esri", esri),
     ("hgt", hgt),
-    ("tif", |data| height_map(&[("a.tif", data)])),
+    ("tif", tif),
+    ("vrt", |data| height_map(&[("f.vrt", parted(data).0), ("f.asc", parted(data).1)])),
     ("map-png", |data| height_map(&[("a.png", data)])),
     ("nrrd", |data| volume(&[("a.nrrd", data)])),
     ("nhdr", nhdr),
@@ -93,6 +94,28 @@ fn hgt(data: &[u8]) {
     if !data.is_empty() {
         let tile: Vec<u8> = data.iter().copied().cycle().take(2 * 1201 * 1201).collect();
         height_map(&[("N37E140.hgt", &tile)]);
+    }
+}
+
+/// As a map, its first overview as one, and its rows one after another.
+fn tif(data: &[u8]) {
+    height_map(&[("a.tif", data)]);
+    let path = written(&[("a.tif", data)]);
+    if let Err(error) = HeightMapSource::File(path.clone()).load_overview(1) {
+        is_one_line(&error);
+    }
+    let mut samples = 0;
+    let mut take = |rows: Rows<'_>| {
+        samples += match rows {
+            Rows::Steps(values) => values.len(),
+            Rows::Float(values) => values.len(),
+        };
+        true
+    };
+    match RowSource::geotiff(&path, 0).and_then(|rows| rows.map(|rows| rows.read(&path, &mut take)).transpose()) {
+        Ok(Some(Some(map))) => assert!(samples == map.width() as usize * map.height() as usize),
+        Ok(_) => {}
+        Err(error) => is_one_line(&error),
     }
 }
 

@@ -4,6 +4,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use serde::Deserialize;
+
 use super::formats::gltf_buffer::percent_decoded;
 use super::{height_map, voxels, world_file};
 use crate::{content, file};
@@ -54,15 +56,28 @@ impl SourceState {
     }
 }
 
+/// What a glTF document says of other files; the rest of it is passed over.
+#[derive(Deserialize)]
+struct GltfBuffers {
+    #[serde(default)]
+    buffers: Vec<GltfBuffer>,
+}
+
+#[derive(Deserialize)]
+struct GltfBuffer {
+    uri: Option<String>,
+}
+
 fn companions(path: &Path) -> Vec<PathBuf> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     if ending == "gltf" {
-        let document: Option<serde_json::Value> =
+        let document: Option<GltfBuffers> =
             std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let buffers = document.as_ref().and_then(|document| document["buffers"].as_array()).into_iter().flatten();
-        let uris = buffers.filter_map(|buffer| buffer["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        let uris = document.into_iter().flat_map(|document| document.buffers).filter_map(|buffer| buffer.uri);
+        let uris = uris.filter(|uri| !uri.starts_with("data:"));
         let folder = path.parent().unwrap_or(Path::new(""));
-        let files = uris.filter_map(percent_decoded).filter_map(|name| file::below(folder, Path::new(&name)).ok());
+        let named = uris.filter_map(|uri| percent_decoded(&uri));
+        let files = named.filter_map(|name| file::below(folder, Path::new(&name)).ok());
         return files.filter(|file| file.is_file()).collect();
     }
     if ending == "png" {

@@ -3,7 +3,7 @@
 //! A tree of fixed depth: a root with a list of tiles, upper nodes of 32 x 32 x 32 entries, lower ones of 16 x 16 x 16,
 //! leaves of 8 x 8 x 8 samples. What no node says is the background.
 
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
 use glam::DVec3;
@@ -28,8 +28,9 @@ const FLOAT: u32 = 1;
 /// Reads the grid of that number, from 0.
 pub(super) fn load(path: &Path, number: u32) -> Result<VoxelGrid, Error> {
     let (file, size_bytes) = file::open(path, Asset::Volume)?;
-    let bytes = grid_bytes(file, size_bytes, number).map_err(|fault| malformed(path, fault))?;
-    dense(&bytes, size_bytes).map_err(|fault| malformed(path, fault))
+    let mut input = Input { file: BufReader::new(file), at: 0, size_bytes };
+    let bytes = grid_bytes(&mut input, number).map_err(|fault| malformed(path, fault))?;
+    dense(&bytes, input.size_bytes).map_err(|fault| malformed(path, fault))
 }
 
 fn fault(reason: impl Into<String>) -> Fault {
@@ -37,12 +38,12 @@ fn fault(reason: impl Into<String>) -> Fault {
 }
 
 /// The bytes of a grid, found by the segments' lists of them.
-fn grid_bytes(mut input: impl Read + Seek, size_bytes: u64, number: u32) -> Result<Vec<u8>, Fault> {
+fn grid_bytes(input: &mut Input<impl Read + Seek>, number: u32) -> Result<Vec<u8>, Fault> {
     let mut found = 0_u64;
     let mut at = 0_u64;
-    while at < size_bytes {
+    while at < input.size_bytes {
         let here = |reason: &str| Fault::new(Place::Byte(at as usize), reason);
-        let segment = Bytes(read(&mut input, at, SEGMENT_BYTES)?);
+        let segment = Bytes(input.read(at, SEGMENT_BYTES)?);
         let magic = segment.slice(0, 8)?;
         if magic != b"NanoVDB0" && magic != b"NanoVDB2" {
             return Err(here("it does not begin as NanoVDB does; it is damaged or something else"));
@@ -54,10 +55,14 @@ fn grid_bytes(mut input: impl Read + Seek, size_bytes: u64, number: u32) -> Resu
         if segment.short(14)? != 0 {
             return Err(here("it is compressed; write it without, as `nanovdb_convert` does by itself"));
         }
+        let count = segment.short(12)?;
+        if count == 0 {
+            return Err(here("a segment of it has no grid; it is damaged"));
+        }
         let mut grids = Vec::new();
         at += SEGMENT_BYTES;
-        for _ in 0..segment.short(12)? {
-            let meta = Bytes(read(&mut input, at, META_BYTES)?);
+        for _ in 0..count {
+            let meta = Bytes(input.read(at, META_BYTES)?);
             // The name follows.
             at = at.saturating_add(META_BYTES + u64::from(meta.int(136)?));
             grids.push((meta.long(8)?, meta.int(32)?));
@@ -67,7 +72,7 @@ fn grid_bytes(mut input: impl Read + Seek, size_bytes: u64, number: u32) -> Resu
                 if kind != FLOAT {
                     return Err(fault(format!("grid {number} holds no floats; write it as a grid of floats")));
                 }
-                return read(&mut input, at, length);
+                return input.read(at, length);
             }
             found += 1;
             at = at.saturating_add(length);
@@ -77,15 +82,28 @@ fn grid_bytes(mut input: impl Read + Seek, size_bytes: u64, number: u32) -> Resu
     Err(fault(format!("it has no grid {number}: give `volume-component` 0 to {last}")))
 }
 
-/// Bytes of the file, which has to have them.
-fn read(input: &mut (impl Read + Seek), at: u64, length: u64) -> Result<Vec<u8>, Fault> {
-    let mut bytes = Vec::new();
-    input.seek(SeekFrom::Start(at)).map_err(|error| Fault::foreign(Place::Whole, &error))?;
-    input.take(length).read_to_end(&mut bytes).map_err(|error| Fault::foreign(Place::Whole, &error))?;
-    if bytes.len() as u64 == length {
-        return Ok(bytes);
+/// A file, read at offsets that mostly follow each other.
+struct Input<R> {
+    size_bytes: u64,
+    /// Offset at which `file` stands.
+    at: u64,
+    file: BufReader<R>,
+}
+
+impl<R: Read + Seek> Input<R> {
+    /// Bytes of the file, which has to have them.
+    fn read(&mut self, at: u64, length: u64) -> Result<Vec<u8>, Fault> {
+        if at.checked_add(length).is_none_or(|end| end > self.size_bytes) {
+            let reason = format!("{length} bytes should stand here; the file is cut off");
+            return Err(Fault::new(Place::Byte(at as usize), reason));
+        }
+        let mut bytes = allocate::<u8>(length as usize)?;
+        let read = self.file.seek_relative(at as i64 - self.at as i64);
+        let read = read.and_then(|()| self.file.read_exact(&mut bytes));
+        read.map_err(|error| Fault::foreign(Place::Whole, &error))?;
+        self.at = at + length;
+        Ok(bytes)
     }
-    Err(Fault::new(Place::Byte(at as usize), format!("{length} bytes should stand here; the file is cut off")))
 }
 
 /// Little-endian numbers at offsets.

@@ -347,6 +347,7 @@ fn damaged_nanovdb_files_are_refused_within_their_bounds() {
         (tiles(&[0], 1000), "too many for so small a file"),
         (changed(0, b"nanovdb0"), "byte 0: it does not begin as NanoVDB does"),
         (changed(8, &(33_u32 << 21).to_le_bytes()), "its version is 33"),
+        (changed(12, &[0]), "byte 0: a segment of it has no grid"),
         (changed(14, &[1]), "it is compressed"),
         (changed(16 + 8, &u64::MAX.to_le_bytes()), "the file is cut off"),
         (changed(16 + 136, &u32::MAX.to_le_bytes()), "the file is cut off"),

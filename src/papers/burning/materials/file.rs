@@ -21,7 +21,7 @@ const MOST_MATERIALS: usize = 256;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
-    /// A PNG of colours, by the texture coordinates of the vertices, in place of their own; beside this file.
+    /// A PNG of colours, by the texture coordinates of the vertices, in place of their own; in this file's folder or below.
     texture: Option<Spanned<String>>,
     #[serde(default)]
     material: Vec<Entry>,
@@ -61,7 +61,9 @@ pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
             return assigned(&document.material, mesh, &mesh.tags.colors, text.as_bytes());
         };
         let wrong = |reason: String| (Some(texture.span().start), reason);
-        let picture = path.with_file_name(texture.get_ref());
+        let name = texture.get_ref();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let picture = file::below(folder, Path::new(name)).map_err(|error| wrong(format!("texture {name}: {error}")))?;
         let picture = read_png_within(&picture, LARGEST_SIDE).map_err(|error| wrong(error.to_string()))?;
         let colors = colors_of(&picture, mesh).map_err(wrong)?;
         assigned(&document.material, mesh, &colors, &[text.as_bytes(), picture.pixels()].concat())
@@ -287,6 +289,8 @@ mod tests {
         for (mesh, text, part) in [
             (&bare, "texture = \"map.png\"\n", "no texture coordinates"),
             (&mesh, "\ntexture = \"gone.png\"\n", "gone.png"),
+            (&mesh, "texture = \"../map.png\"\n", "../map.png: it lies outside the folder"),
+            (&mesh, "texture = \"/etc/passwd\"\n", "/etc/passwd: it lies outside the folder"),
         ] {
             std::fs::write(&path, format!("{text}{entries}")).unwrap();
             let error = load(&path, mesh).unwrap_err().to_string();

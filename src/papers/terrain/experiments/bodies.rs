@@ -57,7 +57,7 @@ fn pieces(text: &str) -> Vec<&str> {
 
 /// The bodies of a piece, whose first line may be a heading if it is the file's.
 fn bodies(piece: &str, is_first: bool) -> Result<Vec<Body>, Refused> {
-    let mut bodies = Vec::with_capacity(piece.lines().count());
+    let mut bodies = vec![];
     for (number, line) in (1..).zip(piece.lines().map(str::trim)) {
         let is_passed_over = line.is_empty() || line.starts_with('#') || (is_first && number == 1 && is_heading(line));
         if !is_passed_over {

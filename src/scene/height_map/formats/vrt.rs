@@ -2,7 +2,7 @@
 
 use super::{load as load_file, malformed};
 use crate::file as any_file;
-use crate::scene::binary::allocate;
+use crate::scene::binary::{allocate, spare_bytes};
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
@@ -10,7 +10,7 @@ use crate::scene::height_map::{Coordinates, Geographic};
 use crate::scene::{Error, HeightMap, Samples, file};
 use glam::DVec2;
 use roxmltree::{Document, Node};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -19,6 +19,13 @@ const MOST_BYTES: u64 = 256 << 20;
 /// A raster may be so much larger than what its parts cover, beside some samples that any may have.
 const MOST_EMPTY: u64 = 16;
 const ANY_SAMPLES: u64 = 16 << 20;
+/// Most parts over a sample, on average.
+const MOST_OVER: u64 = 4;
+/// A file's parts stand together, or are parted by others so often, beside some times that any mosaic may have.
+const MOST_TIMES: usize = 4;
+const ANY_TIMES: usize = 16;
+/// Bytes of the longest name of a file that is looked for.
+const LONGEST_NAME: usize = 1024;
 
 /// A mosaic as its file describes it.
 struct Mosaic {
@@ -31,8 +38,8 @@ struct Mosaic {
 
 /// A rectangle of another file, and its place.
 struct Part {
-    /// In the mosaic's file.
-    line: usize,
+    /// In the mosaic's file, bytes.
+    at: usize,
     name: String,
     no_data: Option<f64>,
     /// First column and row in the other file, and here.
@@ -45,7 +52,7 @@ struct Part {
 pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
     let text = any_file::read_text(path, MOST_BYTES).map_err(|source| file::failed(path, Asset::HeightMap, source))?;
     let mosaic = Mosaic::parse(&text).map_err(|fault| malformed(path, fault))?;
-    mosaic.assemble(path)
+    mosaic.assemble(path, &text)
 }
 
 /// The files of a mosaic's parts that are there.
@@ -78,7 +85,7 @@ impl Mosaic {
             return Err(fault(other, "it is a second band; a height map has one"));
         }
         if let Some(kind) = band.attribute("subClass") {
-            return Err(fault(band, format!("its subClass is {kind:?}; plain mosaics alone are read")));
+            return Err(fault(band, format!("its subClass is {:?}; plain mosaics alone are read", shown(kind))));
         }
         let no_data = child(band, "NoDataValue").map(number).transpose()?;
         let sources = band.children().filter(|node| node.tag_name().name().ends_with("Source"));
@@ -93,39 +100,57 @@ impl Mosaic {
                 format!("its parts cover {covered} of {width} x {height} samples; take those that lie together");
             return Err(fault(root, reason));
         }
+        let copied: u64 = parts.iter().map(|part| u64::from(part.size.0) * u64::from(part.size.1)).sum();
+        if copied > MOST_OVER * width * height + ANY_SAMPLES {
+            let reason = format!("its parts have {copied} samples for {width} x {height}; leave out those that others hide");
+            return Err(fault(root, reason));
+        }
         Ok(Mosaic { size, no_data, step, parts })
     }
 
-    fn assemble(&self, path: &Path) -> Result<HeightMap, Error> {
-        let (width, height) = (self.size.0 as usize, self.size.1 as usize);
-        let mut values = allocate::<f32>(width * height).map_err(|fault| malformed(path, fault))?;
-        values.fill(f32::NAN);
-        let (mut integral, mut placement) = (true, None);
+    /// The file of each part, in their order, and the bytes of all files.
+    fn files(&self, path: &Path, text: &str) -> Result<(Vec<PathBuf>, u64), Error> {
+        let mut sizes = BTreeMap::new();
+        let mut files: Vec<PathBuf> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
-            let refused = |reason: String| malformed(path, Fault::new(Place::Line(part.line), reason));
+            let refused = |reason: String| part.refused(path, text, reason);
             let file = beside(path, &part.name).map_err(|error| refused(format!("{}: {error}", part.name)))?;
             if file.is_dir() || file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt")) {
                 return Err(refused(format!("{}: a mosaic's parts are files of heights", part.name)));
             }
-            let map = load_file(&file, 0)?;
+            sizes.insert(file.clone(), file::open(&file, Asset::HeightMap)?.1);
+            files.push(file);
+        }
+        let times = 1 + files.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        if times > MOST_TIMES * sizes.len() + ANY_TIMES {
+            let reason = format!(
+                "its parts go to and fro between its {} files, {times} times; let those of a file follow each other",
+                sizes.len()
+            );
+            return Err(malformed(path, Fault::new(Place::Whole, reason)));
+        }
+        Ok((files, sizes.values().fold(0, |sum: u64, bytes| sum.saturating_add(*bytes))))
+    }
+
+    fn assemble(&self, path: &Path, text: &str) -> Result<HeightMap, Error> {
+        let (width, height) = (self.size.0 as usize, self.size.1 as usize);
+        let (files, file_bytes) = self.files(path, text)?;
+        let mut read = LastRead::default();
+        // Nothing is kept of a mosaic that could be far larger than its files before all of them are seen to be whole.
+        if (width * height * size_of::<f32>()) as u64 > spare_bytes(file_bytes) {
+            let mut agreed = Agreed::default();
+            for (part, file) in self.parts.iter().zip(&files) {
+                let checked = agreed.check(self, part, read.map(file)?.0);
+                checked.map_err(|reason| part.refused(path, text, reason))?;
+            }
+        }
+        let mut values = allocate::<f32>(width * height).map_err(|fault| malformed(path, fault))?;
+        values.fill(f32::NAN);
+        let mut agreed = Agreed::default();
+        for (part, file) in self.parts.iter().zip(&files) {
+            let (map, heights) = read.map(file)?;
+            agreed.check(self, part, map).map_err(|reason| part.refused(path, text, reason))?;
             let ((column, row), (columns, rows)) = (part.from, part.size);
-            if column + columns > map.width() || row + rows > map.height() {
-                let (wide, high) = (map.width(), map.height());
-                return Err(refused(format!("its SrcRect leaves {}, which has {wide} x {high} samples", part.name)));
-            }
-            integral &= matches!(map.samples(), Samples::Steps { step_m: 1.0, .. });
-            let here = self.placement(&map, part).map_err(refused)?;
-            match placement {
-                None => placement = Some(here),
-                Some(first) if is_one(first, here) => {}
-                Some(_) => {
-                    return Err(refused(format!(
-                        "{} does not lie where its DstRect says, beside the first part",
-                        part.name
-                    )));
-                }
-            }
-            let heights = map.known_heights();
             let is_void = |height: f32| {
                 let is = |no_data: Option<f64>| {
                     no_data.is_some_and(|no_data| f64::from(height) == no_data || height == no_data as f32)
@@ -139,7 +164,8 @@ impl Mosaic {
                 pairs.filter(|(_, height)| !is_void(**height)).for_each(|(value, height)| *value = *height);
             }
         }
-        let placement = placement.unwrap_or(Placement::Unknown);
+        let placement = agreed.placement.unwrap_or(Placement::Unknown);
+        let integral = !agreed.has_fractions;
         let (width, height) = self.size;
         Grid { width, height, values, integral, no_data: Some(f64::NAN), placement }
             .into_map()
@@ -164,6 +190,48 @@ impl Mosaic {
     }
 }
 
+/// What the parts seen so far say of the mosaic.
+#[derive(Default)]
+struct Agreed {
+    has_fractions: bool,
+    placement: Option<Placement>,
+}
+
+impl Agreed {
+    fn check(&mut self, mosaic: &Mosaic, part: &Part, map: &HeightMap) -> Result<(), String> {
+        let (wide, high) = (map.width(), map.height());
+        if part.from.0 + part.size.0 > wide || part.from.1 + part.size.1 > high {
+            return Err(format!("its SrcRect leaves {}, which has {wide} x {high} samples", part.name));
+        }
+        self.has_fractions |= !matches!(map.samples(), Samples::Steps { step_m: 1.0, .. });
+        let here = mosaic.placement(map, part)?;
+        if is_one(*self.placement.get_or_insert(here), here) {
+            return Ok(());
+        }
+        Err(format!("{} does not lie where its DstRect says, beside the first part", part.name))
+    }
+}
+
+/// The map that was read last with its heights, no number where they are void: a file may have several parts.
+#[derive(Default)]
+struct LastRead(Option<(PathBuf, HeightMap, Vec<f32>)>);
+
+impl LastRead {
+    fn map(&mut self, file: &Path) -> Result<(&HeightMap, &[f32]), Error> {
+        // Another one goes before this one comes.
+        let (path, map, heights) = match self.0.take().filter(|(path, ..)| path == file) {
+            Some(read) => read,
+            None => {
+                let map = load_file(file, 0)?;
+                let heights = map.known_heights();
+                (file.to_owned(), map, heights)
+            }
+        };
+        let (_, map, heights) = self.0.insert((path, map, heights));
+        Ok((map, heights.as_slice()))
+    }
+}
+
 /// True where two parts say the same of the mosaic, to a hundredth of a sample.
 fn is_one(a: Placement, b: Placement) -> bool {
     let near = |a: DVec2, b: DVec2, step: DVec2, other: DVec2| {
@@ -183,19 +251,20 @@ fn is_one(a: Placement, b: Placement) -> bool {
 }
 
 impl Part {
+    fn refused(&self, path: &Path, text: &str, reason: String) -> Error {
+        malformed(path, Fault::new(Place::Line(line_at(text, self.at)), reason))
+    }
+
     fn parse(node: Node<'_, '_>, (width, height): (u32, u32)) -> Result<Self, Fault> {
         let kind = node.tag_name().name();
         if !["SimpleSource", "ComplexSource"].contains(&kind) {
-            return Err(fault(node, format!("it is a {kind}; SimpleSource and ComplexSource are read")));
+            return Err(fault(node, "SimpleSource and ComplexSource are read"));
         }
         let plain = ["SourceFilename", "SourceBand", "SourceProperties", "SrcRect", "DstRect", "NODATA", "OpenOptions"];
         if let Some(other) =
             node.children().find(|child| child.is_element() && !plain.contains(&child.tag_name().name()))
         {
-            return Err(fault(
-                other,
-                format!("{} changes heights; write plain ones with gdal_translate", other.tag_name().name()),
-            ));
+            return Err(fault(other, "it changes heights; write plain ones with gdal_translate"));
         }
         let name = required(node, "SourceFilename")?;
         if name.attribute("relativeToVRT") != Some("1") {
@@ -205,7 +274,10 @@ impl Part {
             ));
         }
         if let Some(band) = child(node, "SourceBand").filter(|band| text(*band) != "1") {
-            return Err(fault(band, format!("it is band {:?}; a height map has one", text(band))));
+            return Err(fault(band, format!("it is band {:?}; a height map has one", shown(text(band)))));
+        }
+        if text(name).len() > LONGEST_NAME || text(name).contains(char::is_control) {
+            return Err(fault(name, format!("it is {:?}, no name of a file", shown(text(name)))));
         }
         let (source, here) = (required(node, "SrcRect")?, required(node, "DstRect")?);
         let whole = |rectangle: Node<'_, '_>, name: &str| -> Result<u32, Fault> {
@@ -230,7 +302,7 @@ impl Part {
             return Err(fault(here, "it leaves the raster"));
         }
         let no_data = child(node, "NODATA").map(number).transpose()?;
-        Ok(Part { line: line(node), name: text(name).to_owned(), no_data, from, to, size })
+        Ok(Part { at: node.range().start, name: text(name).to_owned(), no_data, from, to, size })
     }
 }
 
@@ -270,13 +342,15 @@ fn shown(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-fn line(node: Node<'_, '_>) -> usize {
-    node.document().text_pos_at(node.range().start).row as usize
+/// Counted for a fault alone: of each part it would be counted from the file's beginning.
+fn line_at(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count()
 }
 
 /// A fault of an element, by its line and name.
 fn fault(node: Node<'_, '_>, reason: impl AsRef<str>) -> Fault {
-    Fault::new(Place::Line(line(node)), format!("{}: {}", node.tag_name().name(), reason.as_ref()))
+    let line = line_at(node.document().input_text(), node.range().start);
+    Fault::new(Place::Line(line), format!("{}: {}", shown(node.tag_name().name()), reason.as_ref()))
 }
 
 #[cfg(test)]
@@ -353,6 +427,7 @@ mod tests {
         let good = mosaic((5, 2), &(west.clone() + &east));
         let with = |from: &str, to: &str| good.replacen(from, to, 1);
         fs::write(folder.path().join("nested.vrt"), &good).unwrap();
+        let over = |side: u32| part("west.asc", (0, 0), ((0, 0), (side, side)));
         for (text, expected) in [
             ("<a>".to_owned(), "all.vrt: "),
             ("<a/>".to_owned(), "line 1: a: it is no VRTDataset"),
@@ -369,8 +444,11 @@ mod tests {
             (mosaic((5, 2), ""), "it has no SimpleSource"),
             (with("relativeToVRT=\"1\"", "relativeToVRT=\"0\""), "line 6: SourceFilename: it is not relative"),
             (with("<SourceBand>1", "<SourceBand>2"), "it is band \"2\""),
-            (with("<SourceBand>", "<ScaleRatio>2</ScaleRatio><SourceBand>"), "ScaleRatio changes heights"),
-            (good.replace("SimpleSource", "KernelFilteredSource"), "it is a KernelFilteredSource"),
+            (with("<SourceBand>", "<ScaleRatio>2</ScaleRatio><SourceBand>"), "ScaleRatio: it changes heights"),
+            (good.replace("SimpleSource", "KernelFilteredSource"), "KernelFilteredSource: SimpleSource and"),
+            (mosaic((4_096, 4_096), &(0..80).map(|cut| over(4_096 - cut)).collect::<String>()), "leave out those"),
+            (mosaic((5, 2), &(west.clone() + &east).repeat(13)), "to and fro between its 2 files, 26 times"),
+            (with("west.asc", &"w".repeat(2_000)), "no name of a file"),
             (
                 with("<DstRect xOff=\"0\" yOff=\"0\" xSize=\"3\"", "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"4\""),
                 "nothing is resampled",
