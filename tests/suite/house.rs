@@ -92,6 +92,26 @@ fn nothing_strange_lies_in_the_root() {
     assert_eq!(found, ROOT, "left: what a test or a program has written, or ROOT lacks it");
 }
 
+/// The fuzz program has a lock file of its own, which nothing else builds with.
+#[test]
+fn the_fuzz_programs_lock_file_has_what_the_program_depends_on() {
+    let read = |name: &str| fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
+    let (manifest, lock) = (read("Cargo.toml"), read("fuzz/Cargo.lock"));
+    let start = lock.find("name = \"fumarole\"").unwrap();
+    let locked = &lock[start..start + lock[start..].find(']').unwrap()];
+    let dependencies = manifest.lines().skip_while(|line| *line != "[dependencies]").skip(1);
+    let names: Vec<&str> = dependencies
+        .take_while(|line| !line.starts_with('['))
+        .filter(|line| !line.contains("optional = true"))
+        .filter_map(|line| Some(line.split_once(" = ")?.0))
+        .collect();
+    assert!(names.len() > 30, "{names:?}");
+    // With a version where there are several.
+    let is_locked = |name: &&&str| [' ', '"'].iter().any(|end| locked.contains(&format!("\"{name}{end}")));
+    let missing: Vec<_> = names.iter().filter(|name| !is_locked(name)).collect();
+    assert!(missing.is_empty(), "in fuzz, `cargo metadata` writes them into the lock file: {missing:?}");
+}
+
 #[test]
 fn no_file_has_more_than_500_lines() {
     let mut long = Vec::new();

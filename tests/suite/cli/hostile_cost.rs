@@ -8,11 +8,12 @@ use std::time::Instant;
 use super::program::{Program, burning, caustics, folder, fumarole, gas, terrain};
 use crate::common::beside_others;
 
-/// A program that is refused `bytes` under `name`, within the rule.
+/// A program that is refused `bytes` under `name`, within the rule. A map of 2 x 2 samples, `two.asc`, lies beside them.
 fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
     let out = folder();
     let path = out.path().join(name);
     fs::write(&path, bytes).unwrap();
+    fs::write(out.path().join("two.asc"), "ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n").unwrap();
     let program = program().arg(&path);
     let program = if name.ends_with("json") { program.arg(&path) } else { program };
     // Address space of the program itself: its libraries, threads, and what their allocators reserve without using it.
@@ -62,6 +63,8 @@ fn small_files_of_many_triangles() {
     refused(mesh, "instances.gltf", gltf(10_000, 9_000, 1).as_bytes(), &["simplify it"]);
     refused(mesh, "objects.gltf", format!("{{\"nodes\":[{}{{}}]}}", "{},".repeat(1 << 20)).as_bytes(), &["objects"]);
     refused(mesh, "buffers.gltf", gltf(1, 1, 500).as_bytes(), &["positive area"]);
+    let extras = format!("{{\"extras\":[{}0]}}", "0,".repeat(20_000_000));
+    refused(mesh, "extras.gltf", extras.as_bytes(), &["no valid glTF"]);
 }
 
 #[test]
@@ -86,6 +89,54 @@ fn headers_that_promise() {
                   property uchar z\nelement face 9000000\nproperty list uchar uchar vertex_indices\nend_header\n";
     refused(mesh, "empty.ply", &[header.as_bytes(), &[0; 9_000_003]].concat(), &["leaves them empty"]);
     refused(|| terrain("render --map"), "grid.asc", b"ncols 16384\nnrows 16384\n1 2 3", &["cut off"]);
+    let streamed = || terrain("render --variant tiled-compute --stream --map");
+    refused(streamed, "strip.tif", &tiff_of_one_strip(16_384), &["one strip"]);
+}
+
+/// A TIFF whose samples are one strip, packed by Deflate, of which there is a beginning.
+fn tiff_of_one_strip(side: u32) -> Vec<u8> {
+    let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    std::io::Write::write_all(&mut packer, &[0; 1 << 16]).unwrap();
+    let mut strip = packer.finish().unwrap();
+    // As long as the tightest packing of all of them.
+    strip.resize(side as usize * side as usize / 1_990, 0);
+    // Columns, rows, bits, packing, black is 0, the strip's place, channels, rows of a strip, the strip's bytes.
+    let length = strip.len() as u32;
+    let tags = [(256, side), (257, side), (258, 8), (259, 8), (262, 1), (273, 8), (277, 1), (278, side), (279, length)];
+    let directory = tags.iter().flat_map(|&(tag, value): &(u16, u32)| {
+        // A long number.
+        [&tag.to_le_bytes()[..], &4_u16.to_le_bytes(), &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
+    });
+    let start = [b"II*\0", &(8 + length).to_le_bytes()[..], &strip, &(tags.len() as u16).to_le_bytes()].concat();
+    start.into_iter().chain(directory).chain([0; 4]).collect()
+}
+
+#[test]
+fn mosaics_that_promise() {
+    let map = || terrain("render --map");
+    let part = |name: &str, (column, row): (u32, u32), side: u32| {
+        let size = format!("xSize='{side}' ySize='{side}'");
+        format!(
+            "<SimpleSource><SourceFilename relativeToVRT='1'>{name}</SourceFilename><SrcRect xOff='0' yOff='0' {size}/>\
+             <DstRect xOff='{column}' yOff='{row}' {size}/></SimpleSource>\n"
+        )
+    };
+    let mosaic = |(width, height): (u32, u32), parts: &str| {
+        let size = format!("rasterXSize='{width}' rasterYSize='{height}'");
+        format!("<VRTDataset {size}>\n<VRTRasterBand>\n{parts}</VRTRasterBand></VRTDataset>").into_bytes()
+    };
+    let side = 16_384;
+    refused(map, "gone.vrt", &mosaic((side, side), &part("gone.asc", (0, 0), side)), &["gone.asc: No such file"]);
+    refused(map, "small.vrt", &mosaic((side, side), &part("two.asc", (0, 0), side)), &["leaves two.asc"]);
+    let many: String = (0..60_000).map(|i| part("two.asc", (i, 0), 1)).collect();
+    let many = many + &part("gone.asc", (0, 0), 1);
+    refused(map, "many.vrt", &mosaic((60_000, 2), &many), &["line 60003: gone.asc: No such file"]);
+    refused(
+        map,
+        "nodes.vrt",
+        &format!("<VRTDataset>{}</VRTDataset>", "<a/>".repeat(1 << 20)).into_bytes(),
+        &["it has no"],
+    );
 }
 
 #[test]
@@ -145,6 +196,13 @@ fn volumes_that_promise() {
     [12, 16, 20].iter().for_each(|at| put(root + at, &500_u32.to_le_bytes()));
     put(root + 24, &900_000_u32.to_le_bytes());
     refused(volume, "tiles.nvdb", &grid, &["its nodes overlap"]);
+    // Segments of a grid without bytes.
+    let mut segment = [0; 16 + 176];
+    segment[..8].copy_from_slice(b"NanoVDB0");
+    segment[8..12].copy_from_slice(&(32_u32 << 21).to_le_bytes());
+    segment[12] = 1;
+    let last = || gas("render --volume-component 4000000 --volume-file");
+    refused(last, "segments.nvdb", &segment.repeat(150_000), &["it has no grid 4000000"]);
 }
 
 /// A grey PNG of zeros without its end.

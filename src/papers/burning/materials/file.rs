@@ -61,9 +61,11 @@ pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
             return assigned(&document.material, mesh, &mesh.tags.colors, text.as_bytes());
         };
         let wrong = |reason: String| (Some(texture.span().start), reason);
-        let name = texture.get_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let picture = file::below(folder, Path::new(name)).map_err(|error| wrong(format!("texture {name}: {error}")))?;
+        let picture = file::below(folder, Path::new(texture.get_ref())).map_err(|error| {
+            let shown: String = texture.get_ref().chars().take(40).collect();
+            wrong(format!("texture {shown:?}: {error}"))
+        })?;
         let picture = read_png_within(&picture, LARGEST_SIDE).map_err(|error| wrong(error.to_string()))?;
         let colors = colors_of(&picture, mesh).map_err(wrong)?;
         assigned(&document.material, mesh, &colors, &[text.as_bytes(), picture.pixels()].concat())
@@ -289,8 +291,8 @@ mod tests {
         for (mesh, text, part) in [
             (&bare, "texture = \"map.png\"\n", "no texture coordinates"),
             (&mesh, "\ntexture = \"gone.png\"\n", "gone.png"),
-            (&mesh, "texture = \"../map.png\"\n", "../map.png: it lies outside the folder"),
-            (&mesh, "texture = \"/etc/passwd\"\n", "/etc/passwd: it lies outside the folder"),
+            (&mesh, "texture = \"../map.png\"\n", "\"../map.png\": it lies outside the folder"),
+            (&mesh, "texture = \"/etc/passwd\"\n", "\"/etc/passwd\": it lies outside the folder"),
         ] {
             std::fs::write(&path, format!("{text}{entries}")).unwrap();
             let error = load(&path, mesh).unwrap_err().to_string();

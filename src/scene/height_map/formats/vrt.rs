@@ -102,7 +102,8 @@ impl Mosaic {
         }
         let copied: u64 = parts.iter().map(|part| u64::from(part.size.0) * u64::from(part.size.1)).sum();
         if copied > MOST_OVER * width * height + ANY_SAMPLES {
-            let reason = format!("its parts have {copied} samples for {width} x {height}; leave out those that others hide");
+            let reason =
+                format!("its parts have {copied} samples for {width} x {height}; leave out those that others hide");
             return Err(fault(root, reason));
         }
         Ok(Mosaic { size, no_data, step, parts })
