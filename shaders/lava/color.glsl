@@ -54,8 +54,9 @@ vec3 rock_at(Rock rock, vec2 place_m) {
 // Daylight that the crust gives back: a fresh basalt's share of it.
 const float GIVEN_BACK = 0.25;
 
-vec3 reflected(vec3 normal) {
-    return GIVEN_BACK * sky_on(normal);
+vec3 reflected(vec3 place_m, vec3 normal) {
+    vec3 mirrored = reflect(normalize(place_m - scene.eye_m), normal);
+    return GIVEN_BACK * sky_on(normal) + scene.gloss * sky_towards(mirrored);
 }
 #else
 // One sheet over all of the lava.
@@ -72,7 +73,7 @@ vec3 rock_at(Rock rock, vec2 place_m) {
 }
 
 // The thesis's lava gives back no light.
-vec3 reflected(vec3 normal) {
+vec3 reflected(vec3 place_m, vec3 normal) {
     return vec3(0.0);
 }
 #endif
@@ -81,8 +82,8 @@ vec3 reflected(vec3 normal) {
 vec3 color_of(vec3 place_m, vec3 normal, vec3 rock) {
     vec3 color = glow_of(place_m);
     if (shading.mode == LAVA) {
-        vec3 daylight = reflected(normal);
-        color += mix(daylight, decoded(daylight), scene.is_blackbody);
+        vec3 daylight = reflected(place_m, normal);
+        color += scene.daylight * mix(daylight, decoded(daylight), scene.is_blackbody);
         color *= mix(rock, decoded(rock), scene.is_blackbody);
     } else if (shading.mode == ROCK) {
         color = rock;

@@ -179,6 +179,34 @@ Piece piece_at(vec3 place_m) {
     return Piece(to_edge_m, middle.xz, particle);
 }
 
+// The smaller blocks that a piece is a heap of, their height over the piece's own, both over its length; a place from its middle in lengths.
+const float BLOCKS = 3.0; // along a piece
+const float CREASE = 0.3; // of a block's length
+
+float rubble(vec2 from_middle, uint particle) {
+    vec2 at = BLOCKS * from_middle;
+    ivec2 cell = ivec2(floor(at));
+    vec2 nearest = vec2(FAR_M); // squared distances of the nearest middle and of the second
+    vec2 way = vec2(0.0);
+    uint block = 0u;
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            ivec2 around = cell + ivec2(x, z);
+            uint number = hashed(particle ^ (uint(around.x + 128) * 256u + uint(around.y + 128)));
+            vec2 from_block = at - vec2(around) - vec2(evenly(number), evenly(number ^ 0x9e3779b9u));
+            float squared = dot(from_block, from_block);
+            bool is_nearest = squared < nearest.x;
+            nearest = is_nearest ? vec2(squared, nearest.x) : vec2(nearest.x, min(squared, nearest.y));
+            way = is_nearest ? from_block : way;
+            block = is_nearest ? number : block;
+        }
+    }
+    vec2 tilt = vec2(evenly(block ^ 0x7f4a7c15u), evenly(block ^ 0x94d049bbu)) - 0.5;
+    float raised = evenly(block ^ 0xbf58476du) - 0.5;
+    float edge = 1.0 - smoothstep(0.0, CREASE, sqrt(nearest.y) - sqrt(nearest.x));
+    return (raised - 0.5 * edge + 1.5 * dot(tilt, way)) / BLOCKS;
+}
+
 void main() {
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
     ivec2 columns = imageSize(heights);
@@ -218,6 +246,7 @@ void main() {
             float raised = evenly(piece.particle ^ 0x94d049bbu) - 0.5;
             float edge = 1.0 - smoothstep(0.0, 0.2 * crust.piece_m, piece.to_edge_m);
             float jumbled_m = crust.piece_m * (raised - 0.5 * edge) + 1.5 * dot(tilt, piece.from_middle_m);
+            jumbled_m += crust.piece_m * rubble(piece.from_middle_m / crust.piece_m, piece.particle);
             relief_m += grown * (crust.jumble * jumbled_m - 0.25 * gap * crust.piece_m);
         }
         relief_m *= borne;

@@ -27,7 +27,6 @@ layout(location = 4) in vec3 to_back;
 layout(location = 0) out vec4 color;
 
 const float OF_THE_GLOW = 0.4;
-const vec3 SKY = vec3(0.8, 0.9, 1.1);
 
 void main() {
     vec3 face = cross(dFdx(world_m), dFdy(world_m));
@@ -44,10 +43,11 @@ void main() {
     vec3 daylight = object.paint * sky_on(normal);
     vec3 glow = object.paint * (is_front ? to_front : to_back);
     // A black body's light is linear, exposed and encoded as the lava's is.
-    vec3 lit = toned(mix(daylight, decoded(daylight), scene.is_blackbody) + glow, object.exposure, object.knee);
+    daylight = scene.daylight * mix(daylight, decoded(daylight), scene.is_blackbody);
+    vec3 lit = toned(daylight + glow, object.exposure, object.knee);
     color = vec4(mix(lit, encoded(lit), scene.is_blackbody), 1.0);
 #else
-    vec3 lit = object.paint * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y);
+    vec3 lit = object.paint * mix(OF_THE_GLOW * scene.glow, scene.daylight * SKY, 0.5 + 0.5 * normal.y);
     color = vec4(toned(lit, object.exposure, object.knee), 1.0);
 #endif
 }

@@ -15,4 +15,7 @@ layout(set = 0, binding = 0, std140) uniform Scene {
     float is_blackbody; // 1 or 0
     float bare_m; // a place that is no higher above the ground has no lava, and nothing is drawn of it
     float fitted; // 1 for splats that cover discs of the map, 0 for discs on the surface
+    vec3 eye_m;
+    float daylight; // factor of the sky's light
+    float gloss; // share of it that a fluid's skin mirrors
 } scene;

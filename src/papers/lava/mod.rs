@@ -112,8 +112,19 @@ pub const FLOORS: [(&str, &str); 4] = [
 ];
 
 /// Parameters that only the passes from the surface to the picture take, as constants.
-pub const DRAWN: [&str; 9] =
-    ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "splat-shape", "temperatures", "tone"];
+pub const DRAWN: [&str; 11] = [
+    "camera",
+    "color",
+    "daylight",
+    "epsilon",
+    "exposure",
+    "gloss",
+    "rock-tile",
+    "splat-radius",
+    "splat-shape",
+    "temperatures",
+    "tone",
+];
 
 /// The paper with its resources.
 pub struct Lava {

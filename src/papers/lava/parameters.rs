@@ -119,6 +119,10 @@ pub struct Parameters {
     pub temperatures_k: Option<[f32; 2]>,
     /// Factor of the colours of lava and objects, above 0 and at most 1000.
     pub exposure: f32,
+    /// Factor of the daylight on objects, on a fluid and on its ground, 0 to 1000.
+    pub daylight: f32,
+    /// Share of the daylight that a fluid's skin mirrors, 0 to 1.
+    pub gloss: f32,
     /// Fate of what is brighter than the display.
     pub tone: Tone,
     /// Side of the square that the rock texture covers once in metres, above 0 and at most 1000.
@@ -163,6 +167,8 @@ impl Default for Parameters {
             is_blackbody: false,
             temperatures_k: None,
             exposure: 1.0,
+            daylight: 1.0,
+            gloss: 0.0,
             tone: Tone::Shoulder,
             rock_tile_m: 2.0,
             shading: Shading::Lava,
@@ -300,6 +306,13 @@ impl Parameters {
             Parameter::new("exposure", field!(Parameters.exposure))
                 .range(up_to_1000)
                 .help("Factor of the colours of lava and objects"),
+            Parameter::new("daylight", field!(Parameters.daylight))
+                .range(Range::from(0.0).to(1000.0))
+                .help("Factor of the daylight on objects, on a fluid and on its ground: 1 is beside glowing lava as bright as dusk, 0 night"),
+            Parameter::new("gloss", field!(Parameters.gloss))
+                .range(Range::from(0.0).to(1.0))
+                .help("With sph: share of the daylight that the skin of the lava mirrors: the glass of fresh pahoehoe")
+                .section("3.2"),
             Parameter::new("tone", field!(Parameters.tone)).help("Fate of what is brighter than the display"),
             Parameter::new("rock-tile", field!(Parameters.rock_tile_m))
                 .range(up_to_1000)

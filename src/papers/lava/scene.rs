@@ -34,6 +34,10 @@ host_block! {
         is_blackbody: f32,
         bare_m: f32,
         fitted: f32,
+        eye_m: [f32; 3],
+        daylight: f32,
+        gloss: f32,
+        _padding: [f32; 3],
     }
 }
 
@@ -166,5 +170,9 @@ fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
         is_blackbody: f32::from(u8::from(parameters.is_blackbody)),
         bare_m: bare_m(parameters),
         fitted: f32::from(u8::from(parameters.splat_shape == SplatShape::Fitted)),
+        eye_m: camera.eye.to_array(),
+        daylight: parameters.daylight,
+        gloss: parameters.gloss,
+        _padding: [0.0; 3],
     }
 }

@@ -115,9 +115,36 @@ pub fn fold_steepness(longer: f64) -> f64 {
 
 /// O'Neill's generator of one word (2014), from 0 to below 1.
 fn evenly(number: u32) -> f64 {
+    f64::from(word(number) >> 8) / 16_777_216.0
+}
+
+fn word(number: u32) -> u32 {
     let state = number.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    f64::from(((word >> 22) ^ word) >> 8) / 16_777_216.0
+    (word >> 22) ^ word
+}
+
+/// Height of the blocks that a piece is a heap of over its own, at a place from its middle, all over its length, and how near the place is to the
+/// line between two of them.
+fn rubble(from_middle: DVec2, number: u32) -> (f64, f64) {
+    let at = 3.0 * from_middle;
+    let mut blocks: Vec<(f64, DVec2, u32)> = Vec::new();
+    for z in -1..=1 {
+        for x in -1..=1 {
+            let [column, row] = [at.x.floor() as i64 + x, at.y.floor() as i64 + z];
+            let key = ((column + 128) * 256 + row + 128) as u32;
+            let block = word(number ^ key);
+            let middle = DVec2::new(column as f64 + evenly(block), row as f64 + evenly(block ^ 0x9e37_79b9));
+            blocks.push((at.distance(middle), at - middle, block));
+        }
+    }
+    blocks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (nearest, way, block) = blocks[0];
+    let apart = blocks[1].0 - nearest;
+    let share = (apart / 0.3).clamp(0.0, 1.0);
+    let fallen = 0.5 * (1.0 - share * share * (3.0 - 2.0 * share));
+    let tilt = (evenly(block ^ 0x7f4a_7c15) - 0.5) * way.x + (evenly(block ^ 0x94d0_49bb) - 0.5) * way.y;
+    ((evenly(block ^ 0xbf58_476d) - 0.5 - fallen + 1.5 * tilt) / 3.0, apart)
 }
 
 impl Crust {
@@ -183,7 +210,10 @@ impl Crust {
                 1.5 * ((evenly(number ^ 0x9e37_79b9) - 0.5) * from.x + (evenly(number ^ 0x7f4a_7c15) - 0.5) * from.z);
             let raised = evenly(number ^ 0x94d0_49bb) - 0.5;
             let fallen = 0.5 * (1.0 - step(0.0, 0.2 * self.piece, edge));
-            relief += grown * (self.jumble * (self.piece * (raised - fallen) + tilt) - 0.25 * gap * self.piece);
+            let (blocks, apart) = rubble(DVec2::new(from.x, from.z) / self.piece, number);
+            texel_of.is_uncertain |= self.jumble > 0.0 && apart < 1e-3;
+            let jumbled = self.piece * (raised - fallen + blocks) + tilt;
+            relief += grown * (self.jumble * jumbled - 0.25 * gap * self.piece);
         }
         let borne = (mean.depth / self.least).clamp(0.0, 1.0);
         texel_of.height = (mean.depth + borne * relief).max(mean.depth.min(0.5 * self.least));

@@ -15,6 +15,8 @@ use crate::measure::ParameterError;
 pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
     let flow = &parameters.flow;
     if parameters.simulation == Simulation::Free {
+        let problem = "is of a fluid's skin; choose `simulation` sph";
+        ParameterError::check(parameters.gloss == 0.0, "gloss", parameters.gloss, problem)?;
         return match flow.first_set() {
             None => Ok(()),
             Some((name, value)) => ParameterError::check(false, name, value, "moves nothing without `simulation` sph"),

@@ -10,6 +10,8 @@ use crate::measure::parameter::{Cost, Parameter, Range};
 /// Columns of the crust's grid along a rope's and a piece's length, at least.
 const COLUMNS_A_ROPE: f64 = 12.0;
 const COLUMNS_A_PIECE: f64 = 6.0;
+/// Along the three blocks that a jumbled piece is a heap of.
+const COLUMNS_A_JUMBLED_PIECE: f64 = 12.0;
 /// Most columns of the crust along one of the surface's.
 const MOST_DETAIL: u32 = 32;
 
@@ -82,7 +84,10 @@ impl Crust {
     pub fn detail(&self, parameters: &Parameters) -> Option<u32> {
         let needed = [
             (self.rope_m(stiffness(&parameters.flow)), COLUMNS_A_ROPE),
-            (self.piece_m(parameters.flow.spacing_m(parameters.particles)), COLUMNS_A_PIECE),
+            (
+                self.piece_m(parameters.flow.spacing_m(parameters.particles)),
+                if self.jumble > 0.0 { COLUMNS_A_JUMBLED_PIECE } else { COLUMNS_A_PIECE },
+            ),
         ];
         let column_m = longest_column_m(parameters);
         let of = |(length_m, columns): (f64, f64)| (columns * column_m / length_m).ceil();
