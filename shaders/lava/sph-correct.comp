@@ -26,6 +26,10 @@ layout(set = 0, binding = 6, std430) buffer Corrected {
     vec4 list[]; // metres
 } corrected;
 
+layout(set = 0, binding = 14, std430) readonly buffer Unmet {
+    uint any[3]; // of `sph-density`
+} unmet;
+
 vec3 place_m;
 float factor;
 vec3 pushed = vec3(0.0);
@@ -43,6 +47,10 @@ void main() {
         return;
     }
     place_m = predicted.list[at].xyz;
+    if (unmet.any[(flow.turn + 2u) % 3u] == 0u) {
+        corrected.list[at] = vec4(place_m, 0.0);
+        return;
+    }
     factor = factors.list[at].x;
     gather_around(at, began_m(at));
     pushed = flow.volume * pushed + factor * wall_gradient(walls_at(place_m));

@@ -1,7 +1,9 @@
 #version 450
 
 // Eq. 8 to 11 of position-based fluids (Macklin and Mueller 2013): the density at the predicted places over that at rest,
-// walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed.
+// walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed. The first
+// of a step's corrections pushes what lies close as much as all of the last step's did, as lava that rests or creeps needs; once none
+// is too dense nothing changes any more.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -20,6 +22,18 @@ layout(set = 0, binding = 4, std430) readonly buffer Predicted {
 layout(set = 0, binding = 5, std430) buffer Factors {
     vec2 list[]; // lambda times h^-2, and the density over that at rest
 } factors;
+
+layout(set = 0, binding = 6, std430) buffer Pressures {
+    float list[]; // sum of the factors: before the first correction that of the last step
+} pressures;
+
+layout(set = 0, binding = 14, std430) buffer Unmet {
+    uint any[3]; // 1 where the correction of this turn finds any too dense
+} unmet;
+
+const float DENSE = 1.01;
+const float CLOSE = 0.99;
+const float LASTS = 0.95; // of the last step's sum
 
 // Softens the constraints: eq. 11's epsilon, times h^2. All are corrected at once, and inside lava the gradients' squares are
 // 1.8: with a tenth of it the corrections overshoot and shake the particles by a part of their distance in every step.
@@ -46,11 +60,24 @@ void main() {
     if (at >= flow.particles) {
         return;
     }
+    bool is_met = unmet.any[(flow.turn + 2u) % 3u] == 0u;
+    if (at == 0u) {
+        unmet.any[(flow.turn + 1u) % 3u] = 0u;
+    }
+    if (is_met) {
+        return;
+    }
     place_m = predicted.list[at].xyz;
     gather_around(at, began_m(at));
     Walls walls = walls_at(place_m);
     float density = flow.volume * sum + wall_share(walls);
     own += wall_gradient(walls);
     float push = max(density - 1.0, 0.0) / (dot(own, own) + others + SOFTNESS);
+    float sum_before = -pressures.list[at];
+    push = max(push, density > CLOSE ? flow.kept * LASTS * sum_before : 0.0);
+    pressures.list[at] = -push - (1.0 - flow.kept) * sum_before;
     factors.list[at] = vec2(-push, density);
+    if (density > DENSE) {
+        unmet.any[flow.turn] = 1u;
+    }
 }

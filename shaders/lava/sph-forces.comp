@@ -1,7 +1,7 @@
 #version 450
 
-// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess. Temperatures come with
-// them.
+// Velocities after gravity alone, in the order of the cells: what viscosity takes. Its first guess, and that of pressure, are that
+// either does as much as in the step before. Temperatures come with them.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -28,6 +28,14 @@ layout(set = 0, binding = 8, std430) buffer Change {
     vec4 list[]; // metres per second
 } change;
 
+layout(set = 0, binding = 9, std430) readonly buffer Lasting {
+    vec4 list[]; // by particles: metres per second that viscosity changed, and the sum of the constraint's factors
+} lasting;
+
+layout(set = 0, binding = 11, std430) buffer Pressures {
+    float list[]; // that sum by cells
+} pressures;
+
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // of `sph-viscosity`
 } unmet;
@@ -46,6 +54,8 @@ void main() {
     vec4 before = texelFetch(velocities, texel, 0);
     vec4 after = before + vec4(flow.time_step_s * flow.gravity_m_s2, 0.0);
     pushed.list[at] = after;
-    to.list[at] = after;
+    vec4 last = flow.kept * lasting.list[particle];
+    to.list[at] = vec4(after.xyz + last.xyz, 0.0);
+    pressures.list[at] = last.w;
     change.list[at] = vec4(0.0);
 }

@@ -19,6 +19,9 @@ layout(set = 0, binding = 1) uniform texture2D motions;
 layout(set = 0, binding = 2, rgba32f) uniform image2D positions;
 layout(set = 0, binding = 3, rgba32f) uniform image2D velocities;
 layout(set = 0, binding = 4, rgba32f) uniform image2D carried;
+layout(set = 0, binding = 5, std430) buffer Lasting {
+    vec4 list[]; // of the last step, by particles
+} lasting;
 
 void main() {
     uint at = element(64u);
@@ -30,4 +33,5 @@ void main() {
     imageStore(positions, texel, texelFetch(places, texel, 0));
     imageStore(velocities, texel, texelFetch(motions, texel, 0));
     imageStore(carried, texel, vec4(0.0));
+    lasting.list[particle] = vec4(0.0);
 }

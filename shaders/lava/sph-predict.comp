@@ -19,10 +19,18 @@ layout(set = 0, binding = 5, std430) buffer Predicted {
     vec4 list[]; // metres
 } predicted;
 
+layout(set = 0, binding = 14, std430) buffer Unmet {
+    uint any[3]; // of `sph-density`
+} unmet;
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
+    }
+    if (at == 0u) {
+        unmet.any[0] = 0u;
+        unmet.any[2] = 1u;
     }
     predicted.list[at] = vec4(inside(began_m(at) + flow.time_step_s * from.list[at].xyz), 0.0);
 }

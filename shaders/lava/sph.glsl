@@ -12,7 +12,7 @@ layout(push_constant, std430) uniform Flow {
     float volume; // of a particle over the kernel's unit, h^3: a lattice at rest sums up to 1
     float drag; // of two particles: twice step, viscosity and volume over density, per h^2
     uint listed; // particles, the first by cells, that have a list of those near them
-    float kept; // of Chebyshev's last change
+    float kept; // of Chebyshev's last change, or of what lasts from the step before
     float gained; // of the residual
     float margin_m; // no particle comes nearer to a wall
     float periodic; // 1 where x and z have no walls but repeat

@@ -35,7 +35,7 @@ impl Parameters {
         ];
         let flow = match self.simulation {
             Simulation::Free => Estimate::default(),
-            Simulation::Sph => sph::estimate(self),
+            Simulation::Sph => sph::estimate::estimate(self),
         };
         let detail = f64::from(self.flow.crust.detail(self).unwrap_or(1));
         let heights = 4.0 * detail * detail * f64::from(self.density[0]) * f64::from(self.density[2]);

@@ -17,6 +17,7 @@ pub mod bed;
 pub mod chebyshev;
 pub mod check;
 pub mod crust;
+pub mod estimate;
 pub mod heat;
 pub mod kernel;
 pub mod neighbours;
@@ -42,7 +43,6 @@ pub mod vent;
 use std::sync::Arc;
 
 use ash::vk;
-use glam::DVec3;
 
 use self::bed::Bed;
 use self::chebyshev::Coefficients;
@@ -61,16 +61,14 @@ use self::sph_rheology::sph_rheology;
 use self::sph_strain::sph_strain;
 use self::sph_viscosity::sph_viscosity;
 use super::animate::State;
-use super::estimate::TEXEL;
 use super::gpu_driven::Cells;
-use super::gpu_driven::sort::{self, Sort};
+use super::gpu_driven::sort::Sort;
 use super::parameters::Parameters;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::transfer::read_buffer;
+use crate::gpu::transfer::{read_buffer, upload_each};
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, ImageView, Pass};
 use crate::host_block;
-use crate::measure::estimate::Estimate;
 
 host_block! {
     pub(super) struct FlowConstants {
@@ -246,6 +244,11 @@ impl Sph {
         let wall_drags = buffer("wall-drags", 4)?;
         let unmet = context.upload("unmet", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 3]))?;
         let viscous = Viscous { pushed: &pushed, change: &change, wall_drags: &wall_drags, unmet: &unmet };
+        let pressures = buffer("pressures", 4)?;
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let by_particles =
+            upload_each(context.device(), &context.name("lasting"), usage, particle_count as usize, |_| [0.0f32; 4])
+                .map_err(|error| error.set_by("particles"))?;
         let near = Neighbours::new(context, &sort, particle_count, &predicted[0])?;
         let heat = buffer("heat", 8)?;
         let latent = parameters.flow.heat.crystallising_k();
@@ -270,18 +273,22 @@ impl Sph {
         let renewal_steps = f64::from(parameters.flow.renewal_s) / f64::from(parameters.time_step_s);
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
-        let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state]);
-        let forces = |state| sph_forces(shaders, &sort, state, &velocities[0], viscous);
+        let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state], &by_particles);
+        let forces = |state| sph_forces(shaders, &sort, state, [&velocities[0], &by_particles, &pressures], viscous);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
             sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], viscous, viscosities)
         };
-        let density = |from: usize| sph_density(shaders, ground, &predicted[from], &factors);
-        let correct =
-            |[from, to]: [usize; 2]| sph_correct(shaders, ground, [&predicted[from], &predicted[to]], &factors);
+        let density = |from: usize| sph_density(shaders, ground, &predicted[from], [&factors, &pressures, &unmet]);
+        let correct = |[from, to]: [usize; 2]| {
+            sph_correct(shaders, ground, [&predicted[from], &predicted[to]], [&factors, &unmet])
+        };
+        let solved = &velocities[coefficients.len() % 2];
+        let lasting =
+            Lasting { velocities: solved, pushed: &pushed, pressures: &pressures, by_particles: &by_particles };
         let finish = |[from, to]: [usize; 2]| {
             let arrived = &predicted[corrections as usize % 2];
-            sph_finish(shaders, &sort, [arrived, &heat], states[to], (&rock, [from, to]))
+            sph_finish(shaders, &sort, [arrived, &heat], lasting, states[to], (&rock, [from, to]))
         };
         Ok(Sph {
             inflow: [inflow(0)?, inflow(1)?],
@@ -290,7 +297,7 @@ impl Sph {
             drag: sph_drag(shaders, ground, &wall_drags, viscosities)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
             rheology,
-            predict: sph_predict(shaders, ground, &velocities[coefficients.len() % 2], &predicted[0])?,
+            predict: sph_predict(shaders, ground, solved, [&predicted[0], &unmet])?,
             density: [density(0)?, density(1)?],
             correct: [correct([0, 1])?, correct([1, 0])?],
             finish: [finish([0, 1])?, finish([1, 0])?, finish([2, 0])?],
@@ -328,7 +335,9 @@ impl Sph {
             frame.compute(pass, |dispatch| dispatch.constants(constants).elements(particles))
         };
         self.sort.record(frame, from, out)?;
-        run(frame, &self.forces[from], &constants)?;
+        // The start has no step before it.
+        let lasting = FlowConstants { kept: f32::from(u8::from(from < self.inflow.len())), ..constants };
+        run(frame, &self.forces[from], &lasting)?;
         run(frame, &self.neighbours.began, &constants)?;
         run(frame, &self.heat_pass, &constants)?;
         if let Some(rheology) = &self.rheology {
@@ -343,6 +352,8 @@ impl Sph {
         run(frame, &self.predict, &constants)?;
         run(frame, &self.neighbours.predicted, &constants)?;
         for at in 0..self.corrections as usize {
+            let kept = f32::from(u8::from(at == 0));
+            let constants = FlowConstants { kept, turn: at as u32 % 3, ..constants };
             run(frame, &self.density[at % 2], &constants)?;
             run(frame, &self.correct[at % 2], &constants)?;
         }
@@ -391,6 +402,19 @@ impl Sph {
     }
 }
 
+/// What a step leaves for the next one's first guesses.
+#[derive(Clone, Copy)]
+struct Lasting<'a> {
+    /// After viscosity.
+    velocities: &'a Arc<Buffer>,
+    /// Before it.
+    pushed: &'a Arc<Buffer>,
+    /// Sums of the constraint's factors.
+    pressures: &'a Arc<Buffer>,
+    /// Both for the next step, by the particles' numbers.
+    by_particles: &'a Arc<Buffer>,
+}
+
 /// What all iterations of the viscosity share.
 #[derive(Clone, Copy)]
 struct Viscous<'a> {
@@ -431,34 +455,6 @@ impl Ground<'_> {
     /// And looks at those near each of them.
     fn over_neighbours(self, name: &'static str, shader: &str) -> PassBuilder {
         self.near.over(name, shader, self.sort).with("bed", self.bed)
-    }
-}
-
-/// Device memory, passes and the work of a step. A particle looks at those of 27 cells, of its own volume each as long as they
-/// are at rest.
-pub fn estimate(parameters: &Parameters) -> Estimate {
-    let scale = Scale::of(parameters);
-    let particles = f64::from(parameters.particles);
-    let cells = scale.cells(parameters, parameters.particles);
-    let sides = parameters.space_m.as_dvec3() / DVec3::from(cells.counts.map(f64::from));
-    let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
-    let iterations =
-        chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 5.0;
-    let (listed, longest) = neighbours::bytes(parameters.particles);
-    let looked_at_in_all =
-        2.0 * particles * looked_at + iterations * neighbours::looked_at(parameters.particles, looked_at);
-    let [columns, _, rows] = parameters.density.map(f64::from);
-    let detail = f64::from(parameters.flow.crust.detail(parameters).unwrap_or(0));
-    let crust = detail * detail * columns * rows;
-    Estimate {
-        bytes: vec![
-            ("particles", 168.0 * particles + listed + sort::bytes(&cells)),
-            ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
-        ],
-        buffers: vec![("particles", longest.max(16.0 * particles))],
-        passes: Some(("corrections", iterations as u64 + 24)),
-        invocations: vec![("particles", looked_at_in_all), ("density", 2.0 * crust * looked_at)],
-        ..Estimate::default()
     }
 }
 

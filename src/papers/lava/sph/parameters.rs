@@ -44,7 +44,7 @@ pub struct Flow {
     pub slope_deg: Option<f32>,
     /// Bounds of the fluid along x and z.
     pub sides: Sides,
-    /// Corrections of the density in a step, 1 to 100.
+    /// Most corrections of the density in a step, 1 to 100.
     pub corrections: u32,
     /// Time in seconds after which each of two layings of the rock is renewed, 0.1 to 1000.
     pub renewal_s: f32,
@@ -121,7 +121,7 @@ impl Flow {
                 .cost(Cost::Buffers),
             Parameter::new("corrections", field!(Flow.corrections))
                 .range(Range::from(1.0).to(100.0))
-                .help("With sph: corrections of the density in a step")
+                .help("With sph: most corrections of the density in a step")
                 .section("9")
                 .cost(Cost::Buffers),
             Parameter::new("rock-renewal", field!(Flow.renewal_s))

@@ -14,12 +14,13 @@ pub fn sph_correct(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     [predicted, corrected]: [&Arc<Buffer>; 2],
-    factors: &Arc<Buffer>,
+    [factors, unmet]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
     ground
         .over_neighbours("sph-correct", "lava/sph-correct.comp")
         .with("predicted", predicted)
         .with("factors", factors)
         .with("corrected", corrected)
+        .with("unmet", unmet)
         .build(shaders)
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 
-/// Makes the pass; `factors` takes factor and density.
+/// Makes the pass; `factors` takes factor and density, `pressures` the sum of the step's factors, and `unmet` tells whether any is too
+/// dense.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -14,11 +15,13 @@ pub fn sph_density(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     predicted: &Arc<Buffer>,
-    factors: &Arc<Buffer>,
+    [factors, pressures, unmet]: [&Arc<Buffer>; 3],
 ) -> Result<Pass, Error> {
     ground
         .over_neighbours("sph-density", "lava/sph-density.comp")
         .with("predicted", predicted)
         .with("factors", factors)
+        .with("pressures", pressures)
+        .with("unmet", unmet)
         .build(shaders)
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{Rock, over_cells};
+use super::{Lasting, Rock, over_cells};
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
@@ -17,6 +17,7 @@ pub fn sph_finish(
     shaders: &ShaderLibrary,
     sort: &Sort,
     [predicted, heat]: [&Arc<Buffer>; 2],
+    lasting: Lasting<'_>,
     state: &State,
     (rock, [from, to]): (&Rock, [usize; 2]),
 ) -> Result<Pass, Error> {
@@ -29,5 +30,9 @@ pub fn sph_finish(
         .with("carried_before", &rock.states[from])
         .with("carried_after", &rock.states[to])
         .with("carried", &rock.by_cells)
+        .with("from", lasting.velocities)
+        .with("pushed", lasting.pushed)
+        .with("pressures", lasting.pressures)
+        .with("lasting", lasting.by_particles)
         .build(shaders)
 }

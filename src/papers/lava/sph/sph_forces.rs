@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from a state; `pushed` and `velocities` take the velocities, `change` is set to none, and `unmet` says that iterations have begun.
+/// Makes the pass from a state and what is `lasting` of the step before; `pushed`, `velocities` and `pressures` take them, `change` is set to none, and `unmet` says that iterations have begun.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -16,7 +16,7 @@ pub fn sph_forces(
     shaders: &ShaderLibrary,
     sort: &Sort,
     state: &State,
-    velocities: &Arc<Buffer>,
+    [velocities, lasting, pressures]: [&Arc<Buffer>; 3],
     Viscous { pushed, change, unmet, .. }: Viscous<'_>,
 ) -> Result<Pass, Error> {
     over_cells("sph-forces", "lava/sph-forces.comp", sort)
@@ -25,6 +25,8 @@ pub fn sph_forces(
         .with("pushed", pushed)
         .with("to", velocities)
         .with("change", change)
+        .with("lasting", lasting)
+        .with("pressures", pressures)
         .with("unmet", unmet)
         .build(shaders)
 }

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::InflowConstants;
-use crate::gpu::{Error, ImageView, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 
-/// Makes the pass from the start into a state, whose rock is carried by `carried`.
+/// Makes the pass from the start into a state, whose rock is carried by `carried`; they have done nothing that is `lasting`.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -15,6 +15,7 @@ pub fn sph_inflow(
     start: &State,
     state: &State,
     carried: &Arc<ImageView>,
+    lasting: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     Pass::compute("sph-inflow", "9", "lava/sph-inflow.comp")
         .constants::<InflowConstants>()
@@ -23,5 +24,6 @@ pub fn sph_inflow(
         .with("positions", &state.positions)
         .with("velocities", &state.velocities)
         .with("carried", carried)
+        .with("lasting", lasting)
         .build(shaders)
 }

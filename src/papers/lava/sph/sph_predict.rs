@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Ground;
 use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 
-/// Makes the pass from the last iterate of the velocities to places in metres.
+/// Makes the pass from the last iterate of the velocities to places in metres; `unmet` says that corrections have begun.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -13,11 +13,12 @@ pub fn sph_predict(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     velocities: &Arc<Buffer>,
-    predicted: &Arc<Buffer>,
+    [predicted, unmet]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
     ground
         .over_cells("sph-predict", "lava/sph-predict.comp")
         .with("from", velocities)
         .with("predicted", predicted)
+        .with("unmet", unmet)
         .build(shaders)
 }
