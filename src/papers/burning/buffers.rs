@@ -429,7 +429,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
 }
 
 /// Radius of the boundary when the last vertex has burnt out, if it never halts.
-fn last_radius(variant: Variant, parameters: &Parameters, model: &Model) -> f32 {
+pub(super) fn last_radius(variant: Variant, parameters: &Parameters, model: &Model) -> f32 {
     let farthest = model.rest.iter().map(|vertex| vertex.boundary_distance).fold(0.0, f32::max);
     let own = [parameters.flammability];
     let substances = parameters.materials.as_ref().map_or(Vec::new(), |m| m.all(variant, parameters));

@@ -70,6 +70,7 @@ impl Parameters {
         let of_triangle = of_triangle + if self.orders_triangles(is_refined) { NUMBER } else { 0.0 };
         let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
         let has_light = self.has_linear_light();
+        let of_vertex = of_vertex + if has_puddle { size_of::<VertexState>() as f64 } else { 0.0 };
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
         let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX + bending::NUMBERS_OF_VERTEX);
         let connects = self.keeps_connected(variant);

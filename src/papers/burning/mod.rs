@@ -205,13 +205,7 @@ impl Burning {
             variant,
             loading: (!parameters.preload).then(|| Loading::new(device, &buffers)).transpose()?,
             heat_boundary: heat_boundary(shaders, variant, &buffers, parts.as_ref())?,
-            internal_deformation: InternalDeformation::new(
-                shaders,
-                variant,
-                parameters.time_division,
-                &buffers,
-                &model,
-            )?,
+            internal_deformation: InternalDeformation::new(shaders, label, (variant, parameters), &buffers, &model)?,
             block_weights: block_weights(shaders, parameters, &buffers, refinement.is_some(), &model)?,
             block_rotation: block_rotation(shaders, variant, &buffers, &model)?,
             flames,
@@ -296,7 +290,7 @@ impl Burning {
                     refinement.record(frame)?;
                 }
             }
-            self.internal_deformation.record(frame, tick, slice)?;
+            self.internal_deformation.record(frame, self.ticks() + 1, slice)?;
             self.slices += 1;
             if slice + 1 < division {
                 continue;

@@ -12,6 +12,10 @@ const LEVEL: f64 = 1e-4;
 /// Ticks for which the same end of an edge between equal heights gives way (ours; at random in the text).
 const PERIOD: u32 = 8;
 
+/// Sweeps of the folding in a tick in which wax sets, and the share of its step that each end of an edge then takes (ours).
+const SWEEPS: u32 = 7;
+const SHARE: f64 = 0.75;
+
 /// One edge of a triangle that a flow-true vertex is the source, the upper end, of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
@@ -67,13 +71,21 @@ impl Tick<'_> {
         (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
     }
 
-    /// Share of its motion that wax has left so long after the last vertex has burnt out; ours.
-    fn warmth(&self, state: &State) -> f64 {
-        let Some(setting_s) = self.constants.setting_s else { return 1.0 };
+    /// Seconds since the last vertex has burnt out, below 0 before.
+    fn cold_s(&self, state: &State) -> f64 {
         let last = self.constants.reaches.iter().copied().fold(0.0, f64::max);
         let deformed = self.radius(state.growth_ticks) - 2.0 * self.constants.width - last;
-        let cold_s = deformed / self.constants.speed - f64::from(self.constants.flammability) / RATE;
-        (1.0 - cold_s / setting_s).clamp(0.0, 1.0)
+        deformed / self.constants.speed - f64::from(self.constants.flammability) / RATE
+    }
+
+    /// Share of its motion that wax has left then; ours.
+    fn warmth(&self, state: &State) -> f64 {
+        let Some(setting_s) = self.constants.setting_s else { return 1.0 };
+        (1.0 - self.cold_s(state) / setting_s).clamp(0.0, 1.0)
+    }
+
+    fn is_setting(&self, state: &State) -> bool {
+        self.constants.setting_s.is_some() && self.cold_s(state) > 0.0
     }
 
     /// omega Dist and omega Dist / chi.
@@ -176,9 +188,10 @@ impl Tick<'_> {
     }
 
     /// Section 6.3.3: the mean of the steps over all edges that start at `v` and are out of range, unless what holds
-    /// the vertex would be left farther behind by it.
+    /// the vertex would be left farther behind by it. While wax sets edges start at both ends, each of which takes a share.
     pub fn folding(&self, before: &State, v: usize) -> Decided {
         let [longest, shortest] = self.range();
+        let sets = self.is_setting(before);
         let p = before.positions[v];
         let (mut sum, mut count, mut margin) = (DVec3::ZERO, 0, f64::INFINITY);
         let mut holders = Vec::new();
@@ -192,7 +205,7 @@ impl Tick<'_> {
                 if holds {
                     holders.push(position);
                 }
-                let (is_source, close) = self.is_source(before, v, other);
+                let (is_source, close) = if sets { (true, f64::INFINITY) } else { self.is_source(before, v, other) };
                 margin = margin.min(close);
                 if !is_source {
                     continue;
@@ -206,7 +219,7 @@ impl Tick<'_> {
                 }
             }
         }
-        let step = sum / f64::from(count.max(1));
+        let step = if sets { SHARE } else { 1.0 } * sum / f64::from(count.max(1));
         let strain = |at: DVec3| -> f64 { holders.iter().map(|h| violation(at - h, longest, shortest)).sum() };
         let [now, then] = [p, p + step].map(strain);
         if now != then {
@@ -235,7 +248,26 @@ impl Tick<'_> {
             state.left[v] -= u32::from(is_active);
             margins[v] = margin.min(close);
         }
+        if self.is_setting(&before) {
+            for _ in 1..SWEEPS {
+                margins = self.sweep(state, warmth, &margins);
+            }
+        }
         margins
+    }
+
+    /// Another folding of all that flows. A decision that was close bears on those around it in the next sweep.
+    fn sweep(&self, state: &mut State, warmth: f64, margins: &[f64]) -> Vec<f64> {
+        let before = state.clone();
+        let mut closer = margins.to_vec();
+        for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
+            let (folded, margin) = self.folding(&before, v);
+            let moved = before.positions[v] + warmth * folded;
+            state.positions[v] = moved.with_y(moved.y.max(self.constants.floor));
+            let around = self.model.incidence[v].iter().flat_map(|[t, _]| self.model.triangles[*t].vertices);
+            closer[v] = around.map(|other| margins[other]).fold(margin.min(margins[v]), f64::min);
+        }
+        closer
     }
 }
 
