@@ -47,17 +47,21 @@ void main() {
         f = fragment_at(heads[list]);
     }
     bool is_done = f == NONE;
-    bool is_stopped = false;
-    while (!is_done && !is_stopped) {
-        Link link = link_at(f);
-        link.next = fragment_at(link.next);
-        uvec4 surface = surfaces[f];
+    bool is_stopped = is_done;
+    do {
+        Link link = Link(NONE, 0u, 0.0, 0.0);
+        uvec4 surface = uvec4(0u);
+        if (!is_done) {
+            link = link_at(f);
+            link.next = fragment_at(link.next);
+            surface = surfaces[f];
+        }
         bool is_seen = (link.mask & ~covered) != 0u || is_shown_through;
-        if (is_seen) {
+        if (!is_done && is_seen) {
             vec3 point = frame.eye + ray * mean_depth(link);
             vec3 normal = unpack_normal(surface.x);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
-            while (l < light_count && !is_cut) {
+            do {
                 take_light(l);
                 float passed = 1.0;
                 if (dot(normal, ray_to_light(point).direction) > 0.0) {
@@ -67,9 +71,9 @@ void main() {
                     attenuations[f * light_count + l] = 1.0 - passed;
                     l++;
                 }
-            }
+            } while (l < light_count && !is_cut);
         }
-        is_stopped = is_cut || (is_seen && l < light_count);
+        is_stopped = is_done || is_cut || (is_seen && l < light_count);
         if (!is_stopped) {
             if (is_seen) {
                 is_shown_through = false;
@@ -88,7 +92,7 @@ void main() {
             made++;
             is_stopped = made >= MOST_MADE;
         }
-    }
+    } while (!is_done && !is_stopped);
     uvec4 state = uvec4(f, covered, uint(is_shown_through), l);
     leave(LIGHT_ATTENUATION, list, is_done, before, State(state, uvec4(0u), uvec3(0u)));
 }

@@ -50,14 +50,12 @@ float gas_density(vec3 world) {
     float value = 0.0;
     uint i = 0u;
     bool is_clear = false;
-    for (; i <= last && !is_clear; i++) {
-        value = fractal(p, kind == CLOUDS && i < last);
-        if (i == last) {
-            continue;
-        }
-        if (kind == CLOUDS) {
+    do {
+        bool is_last = i == last;
+        value = fractal(p, kind == CLOUDS && !is_last);
+        if (!is_last && kind == CLOUDS) {
             p += i == 0u ? vec3(value, 0.0, 0.0) : vec3(0.0, value, 0.0);
-        } else if (kind == FOG) {
+        } else if (!is_last && kind == FOG) {
             float front = in_hand.front_x_m + in_hand.front_per_frame_m * number
                 + in_hand.front_turbulence_m * value + in_hand.front_table_m * interpolated_offset(p.z);
             is_clear = world.x > front;
@@ -65,10 +63,11 @@ float gas_density(vec3 world) {
             p += vec3(2.0 + value, 0.5 + value, -2.0 - value);
             p += vec3(-number * in_hand.along_per_frame, helix);
             thickness = clamp((front - world.x) / in_hand.front_depth_m, 0.0, 1.0);
-        } else {
+        } else if (!is_last) {
             p += vec3(helix.x + value, value - number * in_hand.along_per_frame, helix.y + value);
         }
-    }
+        i++;
+    } while (i <= last && !is_clear);
     is_cut = is_cut || (i <= last && !is_clear);
     if (is_clear) {
         return 0.0;

@@ -44,7 +44,7 @@ void main() {
     float far_m = slice_border(froxel.z + 1u);
     vec4 sum = vec4(0.0);
     uint i = 0u;
-    for (; i < counts.samples; i++) {
+    do {
         vec3 point = frame.eye + ray * mix(near_m, far_m, (float(i) + 0.5) / float(counts.samples));
         float densities[MAX_VOLUMES];
         float previous[MAX_VOLUMES];
@@ -76,7 +76,8 @@ void main() {
             vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
             sum += vec4(emission, extinction);
         }
-    }
+        i++;
+    } while (i < counts.samples);
     if (is_cut || i < counts.samples) {
         stuck[VOLUME] = 1u;
     }

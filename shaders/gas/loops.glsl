@@ -3,6 +3,9 @@
 // from the input, or that stands beside such a one, finds out from its own state, and nothing is kept of what it began.
 // Such a loop is left by its condition alone: behind one that has a second way out, what it leaves through that way may
 // not be up to date when the driver ends it.
+//
+// It asks at its end where it can: lavapipe does what follows a condition also where no thread holds it, `if` or loop, so that a
+// loop that asks first goes through its body once more than any thread wants, and through all loops in it.
 
 bool is_cut = false; // a loop of this thread was ended before its end
 

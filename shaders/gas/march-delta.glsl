@@ -38,14 +38,14 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     is_cut = is_cut || v < volume_count;
     Gas gas = begun;
     gas.evaluations = 0u;
-    while (!gas.is_done && !is_cut && made < MOST_MADE) {
+    do {
         begin_way(pixel_index, first_number + gas.increments);
         float at_m = 0.0;
         vec3 color = vec3(0.0);
         float transparency = 1.0;
         uint evaluations = 0u;
         bool is_over = false;
-        while (!is_over && !is_cut) {
+        do {
             vec3 point = entry + direction * at_m;
             Flight flight = Flight(0.0, length_m - at_m);
             for (v = 0u; v < volume_count; v++) {
@@ -95,7 +95,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     is_over = true;
                 }
             }
-        }
+        } while (!is_over && !is_cut);
         is_cut = is_cut || !is_over;
         // Nothing is kept of a way that was not followed to its end.
         if (!is_cut) {
@@ -106,6 +106,6 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
             gas.evaluations += evaluations;
             gas.is_done = gas.increments >= counts.samples;
         }
-    }
+    } while (!gas.is_done && !is_cut && made < MOST_MADE);
     return gas;
 }

@@ -92,7 +92,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     float previous_m = 0.0;
     // A solid's march begins with the density at its entry, or at the sample before, which nothing is added for.
     bool is_entry = has_solid;
-    while (!gas.is_done && !is_cut && made < MOST_MADE) {
+    do {
         uint increments = is_entry && gas.increments > 0u ? gas.increments - 1u : gas.increments;
         float from = float(increments) * step_m;
         float increment = min(step_m, length_m - from);
@@ -118,7 +118,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                 float apart = 0.25 * in_hand.step_m;
                 uint count = in_hand.is_solid != 0u ? 3u : 1u;
                 uint i = 0u;
-                for (; i < count; i++) {
+                do {
                     vec3 offset = i == 0u ? vec3(0.0) : (i == 1u ? side : up) * apart;
                     float density = volume_density(point + offset);
                     if (i == 0u) {
@@ -128,7 +128,8 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     } else {
                         aboves[v] = density;
                     }
-                }
+                    i++;
+                } while (i < count);
                 is_cut = is_cut || i < count;
                 evaluations += count;
                 densest = max(densest, densities[v]);
@@ -171,6 +172,6 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
             }
             gas.is_done = float(gas.increments) * step_m >= length_m || before * gas.transparency < early;
         }
-    }
+    } while (!gas.is_done && !is_cut && made < MOST_MADE);
     return gas;
 }

@@ -21,9 +21,11 @@ Link link_at(uint fragment) {
 // The node itself, or the fragment after the sections that begin with it.
 uint fragment_at(uint node) {
     uint fragment = node;
-    while (fragment != NONE && is_section(fragment)) {
-        fragment = sections[fragment & ~SECTION].next;
-    }
+    do {
+        if (fragment != NONE && is_section(fragment)) {
+            fragment = sections[fragment & ~SECTION].next;
+        }
+    } while (fragment != NONE && is_section(fragment));
     is_cut = is_cut || (fragment != NONE && is_section(fragment));
     return fragment;
 }

@@ -40,12 +40,13 @@ float fractal(vec3 p, bool is_noise) {
     float scale = 1.0;
     uint count = is_noise ? min(octaves, 1u) : octaves;
     uint octave = 0u;
-    for (; octave < count; octave++) {
+    do {
         float value = noise(p * frequency);
         sum += is_noise ? value : abs(value) * scale;
         frequency *= 2.0;
         scale *= 0.5;
-    }
+        octave++;
+    } while (octave < count);
     is_cut = is_cut || octave < count;
-    return sum;
+    return count > 0u ? sum : 0.0;
 }

@@ -92,7 +92,7 @@ vec3 shaded(uint f, Surface surface, Material material, vec3 color, float depth_
     albedo = veined(surface.object, material.offset_m, albedo, point, normal, ray);
     vec3 sum = albedo * frame.ambient;
     uint l = 0u;
-    for (; l < light_count; l++) {
+    do {
         take_light(l);
         LightRay to_light = ray_to_light(point);
         float facing = dot(normal, to_light.direction);
@@ -104,7 +104,8 @@ vec3 shaded(uint f, Surface surface, Material material, vec3 color, float depth_
             float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
             sum += light * (albedo * facing + material.highlight_strength * pow(mirrored, material.highlight_exponent));
         }
-    }
+        l++;
+    } while (l < light_count);
     is_cut = is_cut || l < light_count;
     return sum;
 }
@@ -145,15 +146,17 @@ void main() {
         color = uintBitsToFloat(before.c);
     }
     bool is_stopped = false;
-    while (remaining != 0u && !is_stopped) {
+    do {
         uint bit = remaining & (~remaining + 1u);
         // Gas, and fragments beside the group: a loop of its own, since a processor that does many pixels in step would
         // shade whenever one of them passes through gas.
         Link link = Link(NONE, 0u, 0.0, 0.0);
         bool is_met = false; // a fragment of the group
-        while (node != NONE && transmittance > 0.0 && !is_met) {
+        do {
             made++;
-            if (is_section(node)) {
+            if (node == NONE || transmittance <= 0.0) {
+                // An empty list.
+            } else if (is_section(node)) {
                 Section gas = sections[node & ~SECTION];
                 group_color += gas.color * transmittance;
                 transmittance *= gas.transparency;
@@ -166,7 +169,7 @@ void main() {
                     node = link.next;
                 }
             }
-        }
+        } while (node != NONE && transmittance > 0.0 && !is_met);
         bool is_passed = node == NONE || transmittance <= 0.0;
         if (is_met && !is_passed) {
             uint narrowed = group & link.mask;
@@ -198,7 +201,7 @@ void main() {
             uint count = fraction > 0.0 ? 2u : 1u;
             vec3 light = vec3(0.0);
             uint i = 0u;
-            for (; i < count; i++) {
+            do {
                 if (i > 0u) {
                     surface = surface_at(behind);
                     at_node = color_at(behind);
@@ -208,7 +211,8 @@ void main() {
                 float weight = i == 0u ? 1.0 - fraction : fraction;
                 uint f = i == 0u ? node : behind;
                 light += shaded(f, surface, material, color_of(at_node), depth_m, ray) * (taken * weight);
-            }
+                i++;
+            } while (i < count);
             // Nothing is kept of a fragment that was not shaded to its end.
             is_cut = is_cut || i < count;
             if (!is_cut) {
@@ -230,7 +234,7 @@ void main() {
             node = head;
         }
         is_stopped = is_stopped || made >= MOST_MADE;
-    }
+    } while (remaining != 0u && !is_stopped);
     imageStore(radiance, ivec2(pixel), vec4(color, opacity));
     uvec4 place = uvec4(remaining, group, node, floatBitsToUint(transmittance));
     uvec4 sums = uvec4(floatBitsToUint(group_color), floatBitsToUint(opacity));

@@ -32,7 +32,7 @@ vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float 
     vec3 emission = vec3(0.0);
     uint l = 0u;
     uint v = 0u;
-    for (; l < light_count; l++) {
+    do {
         take_light(l);
         LightRay to_light = ray_to_light(point);
         // For patchy gas, shadows are not computed where it is thinner than a threshold.
@@ -55,7 +55,8 @@ vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float 
             }
         }
         is_cut = is_cut || v < volume_count;
-    }
+        l++;
+    } while (l < light_count);
     is_cut = is_cut || l < light_count;
     for (v = 0u; v < volume_count; v++) {
         take_volume(v);

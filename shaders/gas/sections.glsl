@@ -81,21 +81,21 @@ void main() {
         }
     }
     bool is_done = depth >= end || used >= reserved.section_count;
-    bool is_stopped = is_cut;
-    while (!is_done && !is_stopped) {
+    bool is_stopped = false;
+    do {
         float next = end;
         bool is_found = false;
-        while (fragment != NONE && !is_found) {
-            uvec4 link = links[fragment];
+        do {
+            uvec4 link = fragment != NONE ? links[fragment] : uvec4(NONE);
             float cut = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
-            is_found = cut > depth;
+            is_found = fragment != NONE && cut > depth;
             if (is_found) {
                 next = min(next, cut);
-            } else {
+            } else if (fragment != NONE) {
                 previous = fragment;
                 fragment = link.x;
             }
-        }
+        } while (fragment != NONE && !is_found);
         bool has_gas = false;
         bool has_more = false;
         for (v = 0u; v < volume_count; v++) {
@@ -109,8 +109,8 @@ void main() {
                 }
             }
         }
-        is_stopped = (fragment != NONE && !is_found) || v < volume_count;
-        is_done = !is_stopped && (!has_more || next <= depth);
+        is_stopped = is_cut || (fragment != NONE && !is_found) || v < volume_count;
+        is_done = is_done || (!is_stopped && (!has_more || next <= depth));
         if (!is_stopped && !is_done) {
             if (has_gas) {
                 Gas gas = begun;
@@ -141,7 +141,7 @@ void main() {
                 is_done = is_done || depth >= end || used >= reserved.section_count;
             }
         }
-    }
+    } while (!is_done && !is_stopped);
     pixels[list].evaluations = evaluations;
     if (is_done) {
         pixels[list].section_count = used;

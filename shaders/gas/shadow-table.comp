@@ -126,10 +126,12 @@ void main() {
     bool has_behind = behind < n;
     int place = before >= 0 ? before : behind;
     bool is_left = before >= 0 || has_behind;
-    while (is_left) {
-        ivec3 entry = column + swept_axis * place;
-        shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
-        is_left = has_behind && place != behind;
+    do {
+        if (is_left) {
+            ivec3 entry = column + swept_axis * place;
+            shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
+        }
+        is_left = is_left && has_behind && place != behind;
         place = behind;
-    }
+    } while (is_left);
 }

@@ -24,13 +24,14 @@ float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(point);
     float sum = 0.0;
     uint v = 0u;
-    for (; v < volume_count; v++) {
+    do {
         take_volume(v);
         vec2 segment = intersect(bounds_segment(point, to_light.direction), vec2(0.0, to_light.distance_m));
         if (segment.x <= segment.y) {
             sum += in_hand.tau_per_m * table_value(l, point + to_light.direction * segment.x);
         }
-    }
+        v++;
+    } while (v < volume_count);
     is_cut = is_cut || v < volume_count;
     return sum;
 }

@@ -10,14 +10,11 @@ float optical_depth_to_light(vec3 point) {
         take_volume(v);
         vec2 segment = intersect(volume_segment(point, to_light.direction), vec2(0.0, to_light.distance_m));
         float length_m = segment.y - segment.x;
-        if (length_m <= 0.0) {
-            continue;
-        }
         float step_m = in_hand.step_m;
         float in_volume = 0.0;
-        uint count = uint(ceil(length_m / step_m));
+        uint count = length_m > 0.0 ? uint(ceil(length_m / step_m)) : 0u;
         uint i = 0u;
-        for (; i < count; i++) {
+        do {
             float from = float(i) * step_m;
             float increment = clamp(length_m - from, 0.0, step_m);
             vec3 center = point + to_light.direction * (segment.x + from + 0.5 * increment);
@@ -26,10 +23,11 @@ float optical_depth_to_light(vec3 point) {
                 // On to the increment that the brick ends in.
                 float end_m = min(from + 0.5 * increment + clear_m, length_m);
                 i = max(i + 1u, min(uint(end_m / step_m), count)) - 1u;
-            } else {
+            } else if (count > 0u) {
                 in_volume += volume_density(center) * increment;
             }
-        }
+            i++;
+        } while (i < count);
         is_cut = is_cut || i < count;
         sum += in_hand.tau_per_m * in_volume;
     }

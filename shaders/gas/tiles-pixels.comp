@@ -55,23 +55,27 @@ void main() {
         bool is_opaque = objects[object].opacity >= 1.0 && objects[object].solid_texture < 0;
         uint columns = bits_between(box.x, box.z);
         uint rows = bits_between(box.y, box.w);
-        for (uint row = 0u; row < TILE; row++) {
+        uint row = 0u;
+        do {
             vec4 out_of = outer + edges.per_row * float(row);
             vec4 inside = inner + edges.per_row * float(row);
             uint some = 0u;
             uint all = 0u;
-            for (uint column = 0u; column < TILE; column++) {
+            uint column = 0u;
+            do {
                 vec4 a = out_of + edges.per_column * float(column);
                 vec4 b = inside + edges.per_column * float(column);
                 some |= min(min(a.x, a.y), min(a.z, a.w)) >= 0.0 ? 1u << column : 0u;
                 all |= min(min(b.x, b.y), min(b.z, b.w)) > 0.0 ? 1u << column : 0u;
-            }
+                column++;
+            } while (column < TILE);
             uint seen_bits = (rows >> row & 1u) != 0u ? columns : 0u;
             uint shift = (row & 3u) * 8u;
             uvec2 half_of = row < 4u ? uvec2(1u, 0u) : uvec2(0u, 1u);
             touching |= half_of * ((some & seen_bits) << shift);
             filling |= half_of * ((is_opaque ? all & seen_bits : 0u) << shift);
-        }
+            row++;
+        } while (row < TILE);
     }
     touched[2u * lane] = touching.x;
     touched[2u * lane + 1u] = touching.y;

@@ -197,6 +197,37 @@ fn some_rows_are_those_of_the_picture() {
     });
 }
 
+/// 4096 x 4096 pixels are done in bands: across a border between two of them, and in the first and the last, rows are those that are
+/// drawn alone, in a band of their own.
+#[test]
+fn a_picture_of_4096_by_4096_is_done_in_bands() {
+    const SIDE: u32 = 4096;
+    gpu_test(|device| {
+        let panes = [pane(-3.0, 0.7, Vec3::X), Object { opacity: 0.4, ..pane(-2.5, -0.3, Vec3::Y) }];
+        let parameters = Parameters { width: SIDE, height: SIDE, list_bytes: Some(32 << 20), ..parameters() };
+        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters, &panes, None).unwrap();
+        let mut recorder = Recorder::new(device).unwrap();
+        let mut draw = |rows: Range<u32>| {
+            gas.keep_rows(rows.clone());
+            recorder.run(Mode::Plain, |frame| gas.record_picture(frame, 0)).unwrap();
+            assert!(gas.settle(&shaders).unwrap());
+            let row_bytes = 4 * SIDE as usize;
+            let picture = read_image(device, gas.picture()).unwrap();
+            let kept = rows.start as usize * row_bytes..rows.end as usize * row_bytes;
+            (picture[kept].to_vec(), gas.demand(&shaders).unwrap().rows)
+        };
+        let (whole, rows) = draw(0..SIDE);
+        assert!(rows < SIDE / 8, "{rows} rows at once");
+        let colors: std::collections::BTreeSet<&[u8]> = whole.chunks_exact(4).step_by(997).collect();
+        assert!(colors.len() > 2, "{colors:?}");
+        for alone in [0..3, rows - 2..rows + 2, SIDE - 3..SIDE] {
+            let place = [alone.start, alone.end].map(|row| row as usize * 4 * SIDE as usize);
+            assert!(draw(alone.clone()).0 == whole[place[0]..place[1]], "rows {alone:?}");
+        }
+    });
+}
+
 /// Lists that no buffer holds make the bands smaller; of one row they end the run, naming what allows more.
 #[test]
 fn bands_shrink_until_their_lists_fit() {
