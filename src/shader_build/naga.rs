@@ -11,14 +11,29 @@ use ::naga::{Barrier, Block, Module, ShaderStage, Statement, TypeInner};
 
 use super::{Diagnostic, Stage, explicit_layout};
 
-const DO_WHILE: &str = "naga's `continue` skips the condition of a do-while loop; use `while` or `for`";
+const CONTINUE: &str = "naga's `continue` skips the condition of a do-while loop; use `if`, `while` or `for`";
 
 /// Text that naga 30.0.1 accepts and translates wrongly, and what to write instead.
 const MISCOMPILED: &[(&str, &str)] = &[
     ("gl_WorkGroupSize", "naga writes invalid SPIR-V for gl_WorkGroupSize; use a constant"),
-    ("do {", DO_WHILE),
-    ("do{", DO_WHILE),
+    ("do{", "write `do {`, which is searched for `continue`"),
 ];
+
+/// The line, from 0, of a do-while loop in which there is a `continue`.
+fn continued_do_while(text: &str) -> Option<usize> {
+    let has_continue = |start: &usize| {
+        let mut depth = 0;
+        let mut is_in = |c: char| {
+            depth += i32::from(c == '{') - i32::from(c == '}');
+            depth > 0
+        };
+        let body = &text[start + "do ".len()..];
+        let end = body.find(|c| !is_in(c)).unwrap_or(body.len());
+        body[..end].contains("continue")
+    };
+    let mut loops = text.match_indices("do {").map(|(start, _)| start);
+    loops.find(has_continue).map(|start| text[..start].matches('\n').count())
+}
 
 /// Compiles flattened GLSL 4.50 to SPIR-V 1.4, adding nothing that the source does not say.
 pub fn compile(stage: Stage, text: &str) -> Result<Vec<u32>, Diagnostic> {
@@ -69,6 +84,9 @@ fn refuse_miscompiled(module: &Module, text: &str) -> Result<(), Diagnostic> {
         if let Some(index) = text.lines().position(|line| line.contains(pattern)) {
             return Err(Diagnostic { line: Some(index + 1), message: (*message).to_owned() });
         }
+    }
+    if let Some(index) = continued_do_while(text) {
+        return Err(Diagnostic { line: Some(index + 1), message: CONTINUE.to_owned() });
     }
     let is_array = |inner: &TypeInner| matches!(inner, TypeInner::Array { .. });
     let nested = module.types.iter().find(|(_, ty)| match ty.inner {

@@ -98,7 +98,7 @@ fn a_naga_error_names_the_included_file_and_line() {
 fn naga_refuses_what_it_would_miscompile() {
     let cases = [
         ("float grid[2][3];", "target = vec4(grid[1][2]);", "nested arrays"),
-        ("", "int i = 0;\ndo {\n i++;\n} while (i < 3);\ntarget = vec4(i);", "do-while"),
+        ("", "int i = 0;\ndo {\n if (i++ == 1) {\n continue;\n }\n} while (i < 3);\ntarget = vec4(i);", "do-while"),
         ("void f(inout float a) {}", "vec2 v = vec2(1.0);\nf(v.y);\ntarget = v.xyxy;", "panicked"),
         (
             "layout(push_constant) uniform P { float a[3]; } p;",
@@ -110,6 +110,8 @@ fn naga_refuses_what_it_would_miscompile() {
         let reason = compile_fragment(declarations, body).naga.unwrap_err();
         assert!(reason.contains(expected), "{reason}");
     }
+    let asked_last = "int i = 0;\ndo {\n i++;\n} while (i < 3);\nfor (; i < 9; i++) {\n continue;\n}\ntarget = vec4(i);";
+    assert!(compile_fragment("", asked_last).naga.is_ok());
 }
 
 /// Compiles `a.frag`, beside which stand `b-red.glsl` and `b-blue.glsl`.
