@@ -28,7 +28,7 @@ fn height(fire: &Fire, state: &State) -> f64 {
 }
 
 /// Share of the edges between flow-true vertices that 6.3.3 leaves alone, within 5 %.
-fn in_range(fire: &Fire, state: &State, parameters: &Parameters) -> f64 {
+pub fn in_range(fire: &Fire, state: &State, parameters: &Parameters) -> f64 {
     let longest = f64::from(parameters.omega) * f64::from(fire.paper.model().mean_edge);
     let shortest = longest / f64::from(parameters.chi);
     let (mut good, mut all) = (0, 0);

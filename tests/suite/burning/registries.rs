@@ -7,6 +7,7 @@ use fumarole::scene::{Mesh, MeshSource};
 
 use super::falling::assert_supported;
 use super::fire::Fire;
+use super::melting::in_range;
 use super::puddle::{Puddle, enclosed, wax};
 use crate::common::gpu_test;
 
@@ -26,7 +27,7 @@ fn nothing_of_them_hovers() {
 }
 
 #[test]
-fn their_wax_keeps_its_volume_and_comes_to_rest() {
+fn their_wax_keeps_its_volume_and_comes_to_rest_with_its_edges_in_range() {
     gpu_test(|device| {
         for file in FILES {
             let mut fire = Fire::new(device, Variant::Melting, &wax(), &load(file));
@@ -44,6 +45,8 @@ fn their_wax_keeps_its_volume_and_comes_to_rest() {
             let state = fire.state();
             fire.ticks(6);
             assert!(fire.state().vertices == state.vertices, "{file} moves");
+            let share = in_range(&fire, &state, &wax());
+            assert!(share >= 0.95, "{file}: {share} of the edges are in range");
         }
     });
 }
