@@ -168,7 +168,7 @@ pub fn save(output: &OutputArgs, path: &Path, bytes: &[u8]) -> Result<(), Failur
     Ok(())
 }
 
-/// What lies in a folder, by name.
+/// Entries of a folder, by name.
 pub fn listed(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let failed = |e: io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
     let paths = |entries: fs::ReadDir| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();

@@ -56,7 +56,7 @@ impl SourceState {
     }
 }
 
-/// What a glTF document says of other files; the rest of it is passed over.
+/// Other files that a glTF document names; the rest of it is passed over.
 #[derive(Deserialize)]
 struct GltfBuffers {
     #[serde(default)]

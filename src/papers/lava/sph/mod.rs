@@ -402,7 +402,7 @@ impl Sph {
     }
 }
 
-/// What a step leaves for the next one's first guesses.
+/// Results of a step that are the next one's first guesses.
 #[derive(Clone, Copy)]
 struct Lasting<'a> {
     /// After viscosity.
@@ -415,7 +415,7 @@ struct Lasting<'a> {
     by_particles: &'a Arc<Buffer>,
 }
 
-/// What all iterations of the viscosity share.
+/// Buffers of all iterations of the viscosity.
 #[derive(Clone, Copy)]
 struct Viscous<'a> {
     /// Right side.

@@ -26,7 +26,7 @@ pub struct Neighbours {
     pub predicted: Pass,
     lists: Arc<Buffer>,
     counts: Arc<Buffer>,
-    /// What the viscosity takes of each that is listed.
+    /// Drags of the viscosity, of each that is listed.
     pub drags: Arc<Buffer>,
     crowded: Arc<Buffer>,
 }

@@ -191,7 +191,7 @@ impl Mosaic {
     }
 }
 
-/// What the parts seen so far say of the mosaic.
+/// The mosaic as the parts seen so far describe it.
 #[derive(Default)]
 struct Agreed {
     has_fractions: bool,
