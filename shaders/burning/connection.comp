@@ -56,6 +56,10 @@ layout(set = 0, binding = 100, std430) readonly buffer Origins {
     uint origins[];
 };
 
+layout(set = 0, binding = 113, std430) buffer Touched {
+    uint touched[]; // last tick at which a triangle of the vertex changed
+};
+
 // True for a corner that several of those left out have.
 bool is_shared(uint vertex) {
     uint count = 0u;
@@ -87,6 +91,9 @@ void main() {
     }
     if (!is_needed) {
         removed[triangle] = 1u;
+        for (uint corner = 0u; corner < 3u; corner++) {
+            touched[triangles[3u * triangle + corner]] = clock.tick;
+        }
         atomicAdd(clock.removed_triangles, 1u);
     }
 }

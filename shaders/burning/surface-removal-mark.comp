@@ -22,6 +22,10 @@ layout(set = 0, binding = 18, std430) buffer Clock {
     Counts clock;
 };
 
+layout(set = 0, binding = 113, std430) buffer Touched {
+    uint touched[]; // last tick at which a triangle of the vertex changed
+};
+
 #ifdef OBJECT_PARTS
 layout(set = 0, binding = 71, std430) buffer Ash {
     uint ash[];
@@ -55,6 +59,9 @@ void main() {
         return;
     }
     removed[triangle] = 1u;
+    for (uint corner = 0u; corner < 3u; corner++) {
+        touched[triangles[3u * triangle + corner]] = clock.tick;
+    }
 #ifdef OBJECT_PARTS
     leave_ash(uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]));
 #endif

@@ -199,6 +199,8 @@ pub struct Buffers {
 
     /// vec4\[N\]: position with the block's rotation, L / L0.
     pub mapped: Arc<Buffer>,
+    /// uint\[N\]: the last tick at which a triangle of the vertex moved or left.
+    pub touched: Arc<Buffer>,
     /// vec4\[C\]: normal, charred fraction.
     pub normals: Arc<Buffer>,
     /// vec4\[C\]: linear RGB, glow.
@@ -294,6 +296,7 @@ impl Buffers {
             alive: list("alive", &alive)?,
             clock: uploaded("clock", bytemuck::bytes_of(&clock))?,
             mapped: empty("mapped", 16 * vertices, plain)?,
+            touched: zeros("touched", 4 * vertices)?,
             normals: empty("normals", 16 * corners, plain)?,
             colors: empty("colors", 16 * corners, plain)?,
             stream: upload(

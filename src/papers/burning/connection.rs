@@ -100,6 +100,7 @@ impl Connection {
             .with("Held", &held)
             .with("Pieces", &pieces)
             .with("Origins", &origins)
+            .with("Touched", &buffers.touched)
             .build(shaders)?;
         let steps = [0, 1].map(|tick| {
             let [choice, unite] = [&choice, &unite].map(|passes| passes[tick].clone());

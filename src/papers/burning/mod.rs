@@ -83,7 +83,7 @@ use self::puddle::Puddle;
 use self::refinement::Refinement;
 use self::surface_removal::SurfaceRemoval;
 use self::tone::ToneMapping;
-use self::vertex_mapping::vertex_mapping;
+use self::vertex_mapping::{Shown, VertexMapping};
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
@@ -129,7 +129,7 @@ pub struct Burning {
     falling: Option<PingPong<6>>,
     puddle: Option<Puddle>,
     flames: Option<Flames>,
-    vertex_mapping: PingPong<1>,
+    vertex_mapping: VertexMapping,
     surface_removal: SurfaceRemoval,
     normals: Normals,
     fire_lights: Option<Arc<Buffer>>,
@@ -145,7 +145,9 @@ pub struct Burning {
     /// Slices before frame 0.
     start_slices: u64,
     next_frame: u32,
-    /// The stream and the normals are those of the newest state.
+    /// The state that stream and normals were last made of.
+    shown: Shown,
+    /// They are those of the newest state.
     is_shaded: bool,
 }
 
@@ -209,7 +211,7 @@ impl Burning {
             block_weights: block_weights(shaders, parameters, &buffers, refinement.is_some(), &model)?,
             block_rotation: block_rotation(shaders, variant, &buffers, &model)?,
             flames,
-            vertex_mapping: vertex_mapping(shaders, &buffers, parts.as_ref(), &model)?,
+            vertex_mapping: VertexMapping::new(shaders, &buffers, parts.as_ref(), &model)?,
             surface_removal: SurfaceRemoval::new(
                 shaders,
                 label,
@@ -239,6 +241,7 @@ impl Burning {
             slices: 0,
             start_slices: 0,
             next_frame: 0,
+            shown: Shown::NONE,
             is_shaded: false,
         };
         burning.burn_to_first_frame()?;
@@ -309,7 +312,7 @@ impl Burning {
                 flames.record(frame, tick)?;
             }
             if mapped_tick == Some(self.ticks()) {
-                self.vertex_mapping.record(frame, tick)?;
+                self.vertex_mapping.record(frame, tick, self.shown)?;
             }
             self.surface_removal.mark(frame, self.ticks())?;
             self.is_shaded = false;
@@ -397,6 +400,7 @@ impl Paper for Burning {
         self.buffers.restore(&self.device)?;
         self.slices = self.start_slices;
         self.next_frame = 0;
+        self.shown = Shown::NONE;
         self.is_shaded = false;
         Ok(())
     }
@@ -426,10 +430,11 @@ impl Paper for Burning {
         if !self.is_shaded {
             let newest = self.newest();
             if !ends_a_tick {
-                self.vertex_mapping.record(frame, newest)?;
+                self.vertex_mapping.record(frame, newest, self.shown)?;
             }
             self.surface_removal.compact(frame, newest)?;
-            self.normals.record(frame)?;
+            self.normals.record(frame, self.shown)?;
+            self.shown = Shown::after(self.ticks());
             self.is_shaded = true;
         }
         if let Some(flame_lights) = &self.flame_lights {

@@ -1,8 +1,9 @@
-//! `normals` (appendix B), with the colour of charring.
+//! `normals` (appendix B), with the colour of charring, of what has changed since the last picture.
 
 use super::buffers::Buffers;
 use super::materials::Appearances;
 use super::model::Model;
+use super::vertex_mapping::Shown;
 use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
 
 /// The pass.
@@ -28,6 +29,7 @@ impl Normals {
                 .with("SubstanceOf", &appearances.substance_of),
         };
         let pass = pass
+            .constants::<Shown>()
             .with("constants", &buffers.constants)
             .with("Rest", &buffers.rest)
             .with("Triangles", &buffers.triangles)
@@ -40,13 +42,14 @@ impl Normals {
             .with("Mapped", &buffers.mapped)
             .with("Normals", &buffers.normals)
             .with("Colors", &buffers.colors)
+            .with("Touched", &buffers.touched)
             .build(shaders)?;
         Ok(Normals { pass, draw_vertices: model.draw_vertex_count() })
     }
 
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.compute(&self.pass, |dispatch| dispatch.elements(self.draw_vertices))
+    pub fn record(&self, frame: &mut Frame<'_>, shown: Shown) -> Result<(), Error> {
+        frame.compute(&self.pass, |dispatch| dispatch.constants(&shown).elements(self.draw_vertices))
     }
 }

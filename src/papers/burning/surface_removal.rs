@@ -207,6 +207,7 @@ fn marks(
         .with("Flammabilities", &buffers.flammabilities)
         .with("Triangles", &buffers.triangles)
         .with("Removed", &buffers.removed)
+        .with("Touched", &buffers.touched)
         .with("Clock", &buffers.clock);
     let mark = buffers.triangle_chunks.changing(mark);
     ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])

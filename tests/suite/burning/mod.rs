@@ -18,6 +18,7 @@ mod puddle;
 mod refinement;
 mod refusals;
 mod registries;
+mod shown;
 mod smoke_volume;
 mod solid;
 mod spreading;
