@@ -8,8 +8,8 @@
 const float WIDEST = 0.881;
 
 void main() {
-    Particle p = particles[gl_InstanceIndex];
-    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
+    Particle p = particles[square_of_vertex()];
+    vec2 corner = corner_of_vertex();
     corner.x *= WIDEST;
     place(p, corner, FLAME_SIZE * flame_height(age_of(p), p.random.y));
 }

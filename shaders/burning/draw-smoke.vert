@@ -14,9 +14,8 @@ layout(location = 4) flat out vec3 smoke_light; // of the flames, linear RGB
 #endif
 
 void main() {
-    Particle p = particles[uint(gl_InstanceIndex) + constants.fire_pool];
-    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
-    place(p, corner, vec2(smoke_size(age_of(p), p.random.y)));
+    Particle p = particles[square_of_vertex() + constants.fire_pool];
+    place(p, corner_of_vertex(), vec2(smoke_size(age_of(p), p.random.y)));
 #ifdef LIGHT_FLAMES
     smoke_light = scattered(p.position);
 #endif

@@ -18,6 +18,19 @@ float age_of(Particle p) {
     return clamp(p.age_ticks / max(p.life_ticks, 1.0), 0.0, 1.0);
 }
 
+// Six vertices a square, of two triangles: a draw of an instance each takes drivers without hardware far longer.
+uint square_of_vertex() {
+    return uint(gl_VertexIndex) / 6u;
+}
+
+// -1 to 1.
+vec2 corner_of_vertex() {
+    uint vertex = uint(gl_VertexIndex) % 6u;
+    // Corners 0, 1, 2 and 3, 2, 1.
+    uint corner = vertex < 3u ? vertex : 6u - vertex;
+    return vec2(corner & 1u, corner >> 1u) * 2.0 - 1.0;
+}
+
 // A corner, -1 to 1, of a square of this half size in radii of a particle.
 void place(Particle p, vec2 corner, vec2 half_size) {
     vec2 size = billboards.particle_radius * half_size;

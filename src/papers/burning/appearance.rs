@@ -77,10 +77,11 @@ impl Parameters {
         self.has_linear_light() && self.smoke_as == SmokeAs::Volume && self.smoke > 0
     }
 
-    /// True where triangles are drawn in the order that vertex caches like best: by the natural look, of objects that are
-    /// not refined. Of triangles at one depth another is seen then than in the mesh's own order.
-    pub fn orders_triangles(&self, is_refined: bool) -> bool {
-        self.look == Look::Natural && !is_refined
+    /// True where triangles are drawn in the order that vertex caches like best: objects that are not refined. Of triangles
+    /// at one depth another is seen then than in the mesh's own order. The text's baseline of refinement keeps its own, as
+    /// what it is held against does.
+    pub fn orders_triangles(&self, variant: Variant, is_refined: bool) -> bool {
+        !is_refined && (self.look == Look::Natural || variant != Variant::FullySubdivided)
     }
 
     /// True where the ground is drawn.

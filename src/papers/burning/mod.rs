@@ -450,7 +450,7 @@ impl Paper for Burning {
         if let Some(draw_puddle) = &self.draw_puddle {
             draw_puddle.record(frame, self.newest())?;
         }
-        if let Some(draw_fire) = &self.draw_fire {
+        if let Some(draw_fire) = &mut self.draw_fire {
             draw_fire.record(frame)?;
         }
         if let Some(tone) = &self.tone {

@@ -76,7 +76,7 @@ impl SurfaceRemoval {
         let runs = refinement.map_or(model.triangle_count(), Refinement::node_count).div_ceil(RUN);
         let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(runs));
         let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let draw_order = parameters.orders_triangles(refinement.is_some()).then(|| {
+        let draw_order = parameters.orders_triangles(variant, refinement.is_some()).then(|| {
             let order = draw_order(model.lattice.finest(), model.draw_vertex_count());
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
             upload(shaders.device(), &format!("{label}/draw-order"), usage, bytemuck::cast_slice(&order))
