@@ -7,6 +7,8 @@
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
+#include "burning/clock.glsl"
+#include "burning/compacted.glsl"
 #include "burning/constants.glsl"
 #include "burning/runs.glsl"
 #include "burning/order-{ORDER}.glsl"
@@ -15,13 +17,17 @@ layout(set = 0, binding = 13, std430) readonly buffer Removed {
     uint removed[];
 };
 
+layout(set = 0, binding = 18, std430) readonly buffer Clock {
+    Counts clock;
+};
+
 layout(set = 0, binding = 29, std430) buffer GroupSums {
     uint group_sums[];
 };
 
 void main() {
     uint run = element(64u);
-    if (run * RUN >= constants.triangle_count) {
+    if (run * RUN >= constants.triangle_count || is_compacted(clock.removed_triangles)) {
         return;
     }
     uint sum = 0u;

@@ -1,8 +1,11 @@
 #version 450
 
+#pragma variants TRIANGLES=whole,refined
+
 // Second phase: one workgroup makes of the counts the index of each run's first triangle, and writes what the
 // draw reads. A thread adds up a run of counts, at most 8,192 where a storage buffer holds 128 MiB, by itself, so that
-// no number of triangles comes near the 65,535 iterations after which lavapipe ends the loops of a shader.
+// no number of triangles comes near the 65,535 iterations after which lavapipe ends the loops of a shader. Of triangles that
+// are not refined the stream stays as it is until another one is removed.
 
 layout(local_size_x = 256) in;
 
@@ -22,12 +25,30 @@ layout(set = 0, binding = 29, std430) buffer GroupSums {
     uint group_sums[];
 };
 
+#ifdef TRIANGLES_WHOLE
+#include "burning/compacted.glsl"
+#endif
+
 layout(push_constant, std430) uniform Groups {
     uint count;
 } groups;
 
 void main() {
     uint thread = gl_LocalInvocationID.x;
+#ifdef TRIANGLES_WHOLE
+    bool is_kept = is_compacted(clock.removed_triangles);
+    barrier();
+    if (thread == 0u) {
+        compacted.is_kept = is_kept ? 1u : 0u;
+        compacted.removed = clock.removed_triangles + 1u;
+    }
+    if (is_kept) {
+        if (thread == 0u) {
+            clock.drawn_triangles = arguments[0] / 3u;
+        }
+        return;
+    }
+#endif
     uint run = (groups.count + GROUP - 1u) / GROUP;
     uint first = min(thread * run, groups.count);
     uint end = min(first + run, groups.count);

@@ -7,6 +7,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
+#include "burning/compacted.glsl"
 #include "burning/constants.glsl"
 #include "burning/runs.glsl"
 #include "burning/order-{ORDER}.glsl"
@@ -29,7 +30,7 @@ layout(set = 0, binding = 29, std430) readonly buffer GroupSums {
 
 void main() {
     uint run = element(64u);
-    if (run * RUN >= constants.triangle_count) {
+    if (run * RUN >= constants.triangle_count || compacted.is_kept == 1u) {
         return;
     }
     uint at = group_sums[run];

@@ -82,13 +82,15 @@ impl SurfaceRemoval {
             upload(shaders.device(), &format!("{label}/draw-order"), usage, bytemuck::cast_slice(&order))
         });
         let draw_order = draw_order.transpose()?;
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let compacted = upload(shaders.device(), &format!("{label}/compacted"), usage, &[0; 8])?;
         let over_all = |shader: &str| {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
             match refinement {
-                None => match &draw_order {
-                    None => step,
-                    Some(order) => step.with("DrawOrder", order),
-                },
+                None => {
+                    let step = step.with("Compacted", &compacted);
+                    draw_order.iter().fold(step, |step, order| step.with("DrawOrder", order))
+                }
                 Some(refinement) => step
                     .constants::<Leaves>()
                     .with("Triangles", &buffers.triangles)
@@ -103,8 +105,13 @@ impl SurfaceRemoval {
                 ["burning/surface-removal-count-cached.comp", "burning/surface-removal-scatter-cached.comp"]
             }
         };
-        let count = over_all(count).build(shaders)?;
-        let scan = step("burning/surface-removal-scan.comp")
+        let count = over_all(count);
+        let count = if refinement.is_none() { count.with("Clock", &buffers.clock) } else { count }.build(shaders)?;
+        let scan = match refinement {
+            None => step("burning/surface-removal-scan-whole.comp").with("Compacted", &compacted),
+            Some(_) => step("burning/surface-removal-scan-refined.comp"),
+        };
+        let scan = scan
             .constants::<Groups>()
             .with("Clock", &buffers.clock)
             .with("Arguments", &buffers.arguments)

@@ -1,5 +1,5 @@
-//! Normals and colours are made anew where something has changed since the last picture; they are what a first picture of
-//! the same state has.
+//! Normals and colours are made anew where something has changed since the last picture, and the stream where a triangle
+//! has left; they are what a first picture of the same state has.
 
 use std::sync::Arc;
 
@@ -12,10 +12,12 @@ use fumarole::scene::{Mesh, MeshSource, shapes};
 use super::fire::{Fire, ball, quick};
 use crate::common::gpu_test;
 
-/// Places, normals and colours of a picture, as bits.
-fn picture(fire: &Fire) -> [Vec<u32>; 3] {
+/// Places, normals, colours and drawn triangles of a picture, as bits.
+fn picture(fire: &Fire) -> [Vec<u32>; 4] {
     let buffers = fire.paper.buffers();
-    [&buffers.mapped, &buffers.normals, &buffers.colors].map(|buffer| fire.read(buffer))
+    let mut picture = [&buffers.mapped, &buffers.normals, &buffers.colors, &buffers.stream].map(|list| fire.read(list));
+    picture[3].truncate(3 * fire.state().counts.drawn_triangles as usize);
+    picture
 }
 
 fn check(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh, frames: [u32; 3]) {
