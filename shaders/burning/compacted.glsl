@@ -1,5 +1,6 @@
 // The stream of an object that is not refined: it holds what has not been removed.
 
+#ifndef TRIANGLES_REFINED
 layout(set = 0, binding = 115, std430) buffer Compacted {
     uint removed; // 1 + triangles that were, 0 before the first stream
     uint is_kept; // 1 where none has been since
@@ -9,3 +10,4 @@ layout(set = 0, binding = 115, std430) buffer Compacted {
 bool is_compacted(uint removed) {
     return compacted.removed == removed + 1u;
 }
+#endif

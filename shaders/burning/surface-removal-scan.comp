@@ -11,6 +11,7 @@ layout(local_size_x = 256) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/compacted.glsl"
 #include "burning/scan.glsl"
 
 layout(set = 0, binding = 18, std430) buffer Clock {
@@ -24,10 +25,6 @@ layout(set = 0, binding = 23, std430) buffer Arguments {
 layout(set = 0, binding = 29, std430) buffer GroupSums {
     uint group_sums[];
 };
-
-#ifdef TRIANGLES_WHOLE
-#include "burning/compacted.glsl"
-#endif
 
 layout(push_constant, std430) uniform Groups {
     uint count;
