@@ -228,6 +228,12 @@ impl PassBuilder {
         self
     }
 
+    /// Draws no triangle that shows this side; the front is the one that its corners come round counter-clockwise on.
+    pub fn cull(mut self, culled: vk::CullModeFlags) -> Self {
+        self.desc.targets.culled = culled;
+        self
+    }
+
     /// The next colour attachment.
     pub fn color(mut self, view: &Arc<ImageView>, load: Load, blend: Blend) -> Self {
         self.desc.targets.colors.push((Target { view: view.clone(), load }, blend));

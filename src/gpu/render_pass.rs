@@ -160,6 +160,8 @@ pub struct Targets {
     pub depth: Option<(Target, DepthTest)>,
     /// The extent of a pass without attachments.
     pub extent: Option<(u32, u32)>,
+    /// Sides of triangles that are not drawn; the front is the one that corners come round counter-clockwise on.
+    pub culled: vk::CullModeFlags,
 }
 
 impl Targets {
@@ -175,6 +177,7 @@ impl Targets {
             colors: self.colors.iter().map(|(target, _)| (target.clone(), Blend::Masked)).collect(),
             depth: self.depth.as_ref().map(|(target, _)| (target.clone(), test)),
             extent: self.extent,
+            culled: self.culled,
         }
     }
 

@@ -126,6 +126,7 @@ impl Draw {
             .indirect(&buffers.arguments)
             .color(&target, Load::Clear(parameters.background.extend(1.0).to_array()), Blend::Replace)
             .depth(&depth, FAR, DepthTest::LessWrite)
+            .cull(hidden_side(parameters.removes(variant), model))
             .build(shaders)?;
         Ok(Draw { pass, camera, view, depth, picture, target, surface })
     }
@@ -143,6 +144,15 @@ impl Draw {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| draw.indices_indirect())
+    }
+}
+
+/// Of an object that nothing leaves the side of its triangles that is never seen from outside.
+fn hidden_side(removes: bool, model: &Model) -> vk::CullModeFlags {
+    match model.hides_inside && !removes {
+        true if model.outward > 0.0 => vk::CullModeFlags::BACK,
+        true => vk::CullModeFlags::FRONT,
+        false => vk::CullModeFlags::NONE,
     }
 }
 

@@ -74,6 +74,8 @@ pub struct Model {
     pub sections: Option<Sections>,
     /// Each edge of the mesh has two triangles, which run along it in opposite directions.
     pub is_closed: bool,
+    /// It is closed, and each of its parts winds outwards: what faces away from a viewer outside is hidden.
+    pub hides_inside: bool,
     /// Triangles of the mesh that were left out because two of their corners coincide.
     pub degenerate: u32,
 }
@@ -157,6 +159,9 @@ impl Model {
         let rest = rest.map(|(&position, boundary_distance)| RestVertex { position, boundary_distance }).collect();
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
+        let outward = if volume < 0.0 { -1.0 } else { 1.0 };
+        let hides_inside = is_closed
+            && volumes_of_parts(positions, &triangles).iter().all(|volume| volume * f64::from(outward) >= 0.0);
         let bends = parameters.collapses(variant) && parameters.bending > 0.0;
         let sections = bends.then(|| Sections::new(positions, &triangles, &touching, mean_edge));
         Ok(Model {
@@ -169,7 +174,7 @@ impl Model {
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
             mean_edge,
-            outward: if volume < 0.0 { -1.0 } else { 1.0 },
+            outward,
             char_depth: (CHAR_FRACTION * volume.abs() / surface(positions, &triangles)) as f32,
             floor: parameters.floor.unwrap_or(bounds.min.y),
             bounds,
@@ -178,6 +183,7 @@ impl Model {
             triangles,
             sources,
             is_closed,
+            hides_inside,
             degenerate,
             lattice,
         })
@@ -264,6 +270,16 @@ fn substances_of(lattice: &Lattice, chosen: impl Fn(u32, u32) -> u32) -> Vec<u32
 fn enclosed_volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let position = |vertex: u32| positions[vertex as usize].as_dvec3();
     triangles.iter().map(|&[a, b, c]| position(a).dot(position(b).cross(position(c))) / 6.0).sum()
+}
+
+/// Signed, of each part that hangs together, at its lowest vertex; 0 elsewhere.
+fn volumes_of_parts(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f64> {
+    let roots = touching::roots_of(positions.len(), triangles);
+    let mut volumes = vec![0.0; positions.len()];
+    for triangle in triangles {
+        volumes[roots[triangle[0] as usize] as usize] += enclosed_volume(positions, &[*triangle]);
+    }
+    volumes
 }
 
 fn surface(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
