@@ -32,7 +32,7 @@ pub struct VertexMapping {
 }
 
 impl VertexMapping {
-    /// Where parts fall, it moves them.
+    /// Parts that fall are moved by it.
     ///
     /// # Errors
     /// Those of the Vulkan layer.
