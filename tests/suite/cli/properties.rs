@@ -16,7 +16,7 @@ use crate::common::beside_others;
 
 /// Draws of each paper; more with this variable.
 const CASES_VARIABLE: &str = "FUMAROLE_CASES";
-const CASES: u32 = 12;
+const CASES: u32 = 6;
 
 /// Address space that no run may pass: the heap of lavapipe twice (the device's memory and what the host makes of it),
 /// the driver and its threads.

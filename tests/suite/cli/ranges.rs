@@ -14,7 +14,7 @@ use super::properties::{ends_well, example, template};
 
 /// All of them with this variable, else so many.
 const ALL_VARIABLE: &str = "FUMAROLE_TEST_ALL_RANGES";
-const SAMPLE: usize = 24;
+const SAMPLE: usize = 12;
 
 /// A scene that is drawn at once.
 fn small(paper: &str) -> &'static str {

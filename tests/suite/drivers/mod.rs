@@ -63,6 +63,34 @@ const BURNING: Paper = Paper {
 const TERRAIN: Paper =
     Paper { program: program::terrain, variants: "all", scene: "--size 160x120", compares_shader_accesses: true };
 
+/// The papers with scenes of a moment.
+const TINY: [(&str, Paper); 5] = [
+    (
+        "lava",
+        Paper {
+            scene: "--size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5 --splat-radius 0.2",
+            ..LAVA
+        },
+    ),
+    ("gas", Paper { scene: "--size 24x16 --table 4 --steps 4 --froxels 9x7x8", ..GAS }),
+    (
+        "caustics",
+        Paper {
+            scene: "--size 32x24 --map-size 16 --water-triangles 100 --planes 3 --levels 8 --mesh box",
+            ..CAUSTICS
+        },
+    ),
+    (
+        "burning",
+        Paper {
+            scene: "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --speed 1 --flammability 10 --first-frame 30 --levels 1 \
+                    --mesh sphere --triangles 100",
+            ..BURNING
+        },
+    ),
+    ("terrain", Paper { scene: "--size 32x24 --resolution 9", ..TERRAIN }),
+];
+
 impl Paper {
     fn run(&self, verb: &str) -> Program {
         (self.program)(verb).args(self.scene)

@@ -11,7 +11,7 @@ use fumarole::papers;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN};
+use super::TINY;
 use crate::cli::program::{ONCE, folder};
 use crate::cli::properties::example;
 
@@ -19,34 +19,6 @@ use crate::cli::properties::example;
 const LINES: usize = 5;
 /// Options that are drawn for a line.
 const OPTIONS: usize = 4;
-
-/// Scenes of a moment.
-const PAPERS: [(&str, Paper); 5] = [
-    (
-        "lava",
-        Paper {
-            scene: "--size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5 --splat-radius 0.2",
-            ..LAVA
-        },
-    ),
-    ("gas", Paper { scene: "--size 24x16 --table 4 --steps 4", ..GAS }),
-    (
-        "caustics",
-        Paper {
-            scene: "--size 32x24 --map-size 16 --water-triangles 100 --planes 3 --levels 8 --mesh box",
-            ..CAUSTICS
-        },
-    ),
-    (
-        "burning",
-        Paper {
-            scene: "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --speed 1 --flammability 10 --first-frame 30 --levels 1 \
-                    --mesh sphere --triangles 100",
-            ..BURNING
-        },
-    ),
-    ("terrain", Paper { scene: "--size 32x24 --resolution 9", ..TERRAIN }),
-];
 
 /// Lines of options of every paper.
 struct Lines {
@@ -96,7 +68,7 @@ impl Visitor for Lines {
     type Error = Infallible;
 
     fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
-        let Some((_, paper)) = PAPERS.iter().find(|(name, _)| *name == S::PAPER) else { return Ok(()) };
+        let Some((_, paper)) = TINY.iter().find(|(name, _)| *name == S::PAPER) else { return Ok(()) };
         let parameters: Vec<_> = S::parameters().into_iter().filter(|p| !["size", "seed"].contains(&p.name)).collect();
         for _ in 0..self.count {
             let variant = S::Variant::ALL[self.below(S::Variant::ALL.len())].as_str();
@@ -123,7 +95,7 @@ fn options_drawn_at_random_are_clean() {
     let folder = folder();
     let (mut clean, mut failures) = (0, Vec::new());
     for (name, line) in &lines.found {
-        let Some((_, paper)) = PAPERS.iter().find(|(paper, _)| paper == name) else { continue };
+        let Some((_, paper)) = TINY.iter().find(|(paper, _)| paper == name) else { continue };
         let program =
             line.iter().fold(paper.run("bench --quiet --json").args(ONCE), |program, option| program.arg(option));
         let ended = paper.under_current_layer(program.on_test_device(), &folder).run();

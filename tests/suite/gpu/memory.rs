@@ -21,7 +21,7 @@ use crate::common::{beside_others, wanted_device};
 const VARIABLE: &str = "FUMAROLE_TEST_MEMORY";
 /// Frames until pipelines, pools and the allocator have what they keep, and those that are looked at.
 const WARMUP: u32 = 40;
-const FRAMES: u32 = 300;
+const FRAMES: u32 = 120;
 /// Most that they may leave behind.
 const LIMIT_KB: i64 = 1024;
 
@@ -146,7 +146,7 @@ fn stays_flat<S: Study>(parameters: &str) {
     S::Variant::ALL.iter().for_each(|variant| is_flat::<S>(variant.as_str(), parameters));
 }
 
-/// Fails where 300 frames of a variant leave 1 MB behind.
+/// Fails where the frames of a variant leave 1 MB behind.
 fn is_flat<S: Study>(variant: &str, parameters: &str) {
     let name = format!("{} {variant} {parameters}", S::PAPER);
     let grown_kb = beside_others(|| growth_kb(&name));
