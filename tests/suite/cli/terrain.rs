@@ -59,7 +59,7 @@ fn table_1_is_written_with_growth_beside_the_paper_s() {
 #[test]
 fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
     let out = folder();
-    let sweep = "experiment 1 --counts 8192 --variant gpu-compute,mesh --out .";
+    let sweep = "experiment 1 --counts 4224 --variant gpu-compute,mesh --out .";
     let ended = small(sweep).args(ONCE).inside(out.path()).run().succeeded();
     let record = read_json(&out.path().join("terrain-1.json"));
     assert_schema(&record);

@@ -258,7 +258,7 @@ fn a_window_is_resized_to_one_pixel_and_back() {
         let display = Display::start();
         let mut window = Window::open(&display, &format!("terrain {}", small("terrain")));
         window.wait_for_frame(0);
-        for step in 0..200_u32 {
+        for step in 0..100_u32 {
             let side = |phase: u32, most: u32| 1 + (step * 37 + phase) % most;
             match step % 10 {
                 0 => window.resize(1, 1),
