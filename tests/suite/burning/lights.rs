@@ -211,6 +211,47 @@ fn a_layer_of_fewer_pixels_is_close_to_that_of_all() {
     });
 }
 
+/// The four texels of a layer of `scale` that a pixel is between.
+fn around(pixel: [u32; 2], size: [u32; 2], scale: u32) -> [usize; 4] {
+    let texel = |axis: usize, next: i64| {
+        let first = (i64::from(pixel[axis]) - i64::from(scale / 2)).div_euclid(scale.into());
+        (first + next).clamp(0, ((size[axis] - 1) / scale).into()) as usize
+    };
+    let columns = size[0].div_ceil(scale) as usize;
+    [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| texel(0, x) + columns * texel(1, y))
+}
+
+#[test]
+fn the_texts_layer_goes_over_the_picture_wherever_it_shows_something() {
+    gpu_test(|device| {
+        let size = [187, 121];
+        for fire_scale in [2, 3] {
+            let [width, height] = size;
+            let look = Look::Dissertation;
+            let parameters = Parameters { width, height, fire_scale, look, first_frame: 130, ..burning() };
+            let fire = first_picture(device, Variant::Shell, &parameters, &ball());
+            let layer = image(device, &fire, "fire-layer");
+            let picture = read_image(device, fire.paper.picture()).unwrap();
+            let bare = Parameters { fire: 0, smoke: 0, ..parameters };
+            let bare = first_picture(device, Variant::Shell, &bare, &ball());
+            let bare = read_image(device, bare.paper.picture()).unwrap();
+            let (mut burning, mut clear) = (0, 0);
+            for (i, (own, without)) in picture.chunks_exact(4).zip(bare.chunks_exact(4)).enumerate() {
+                let at = [i as u32 % width, i as u32 / width];
+                let texels = around(at, size, fire_scale).map(|texel| layer[texel]);
+                if texels.iter().all(|texel| *texel == DVec4::ZERO) {
+                    assert!(own == without, "{at:?} is clear");
+                    clear += 1;
+                } else if texels.iter().all(|texel| texel.x > 0.05 && texel.w == 0.0) && without[0] < 200 {
+                    assert!(own[0] > without[0], "{at:?} burns: {own:?} {without:?}");
+                    burning += 1;
+                }
+            }
+            assert!(burning > 50 && clear > 1000, "{burning} {clear}");
+        }
+    });
+}
+
 #[test]
 fn the_text_alone_has_no_lights() {
     gpu_test(|device| {
