@@ -13,7 +13,7 @@ use super::film;
 use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
 use super::part::{self, Part, parse_rows};
-use super::watch::{interrupted, patiently, progress_bar};
+use super::watch::{ProgressLines, interrupted, patiently, progress_bar};
 use crate::gpu;
 use crate::image::{self, Rgba8, y4m};
 use crate::measure::bench::{Loaded, build, load_for};
@@ -177,11 +177,15 @@ pub fn draw<S: Study>(
         }
     }
     let bar = progress_bar(arguments.quiet, S::PAPER);
-    bar.set_length(numbers.len() as u64);
+    let wanted = numbers.len();
+    bar.set_length(wanted as u64);
+    let mut lines = ProgressLines::new(arguments.quiet);
     let mut written = Vec::new();
     let mut next = |number: u32| -> Result<Option<Rgba8>, Failure> {
         let is_wanted = |left: u32| {
-            bar.set_message(format!("{}: {left} steps to frame {number}", S::PAPER));
+            let told = || format!("{}: {left} steps to frame {number}", S::PAPER);
+            bar.set_message(told());
+            lines.tell(|| format!("note: {}", told()));
             !interrupted().load(Ordering::Relaxed)
         };
         if interrupted().load(Ordering::Relaxed)
@@ -204,9 +208,9 @@ pub fn draw<S: Study>(
             written.push(path);
         }
         bar.inc(1);
+        lines.tell(|| format!("note: {}: {} of {wanted} frames", S::PAPER, bar.position()));
         Ok(Some(rendered))
     };
-    let wanted = numbers.len();
     let numbers = numbers.into_iter();
     let filmed: usize = match &arguments.film {
         Some(path) => film::shoot(path, arguments.film_rate, numbers.map(&mut next).map_while(Result::transpose))?,

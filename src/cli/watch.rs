@@ -106,21 +106,40 @@ pub fn patiently<T>(quiet: bool, what: &str, work: impl FnOnce() -> T) -> T {
     })
 }
 
+/// Lines that tell from time to time how far work is, where there is no terminal for a bar; nothing when quiet.
+pub struct ProgressLines {
+    /// The last one; none where there are no lines.
+    said: Option<Instant>,
+}
+
+impl ProgressLines {
+    pub fn new(quiet: bool) -> Self {
+        let is_piped = !quiet && !std::io::stderr().is_terminal();
+        ProgressLines { said: is_piped.then(Instant::now) }
+    }
+
+    /// Says a line where it is time for one.
+    pub fn tell(&mut self, line: impl FnOnce() -> String) {
+        if let Some(said) = self.said.as_mut().filter(|said| said.elapsed() >= BETWEEN_LINES) {
+            *said = Instant::now();
+            say(&line());
+        }
+    }
+}
+
 /// Runs measured work under a progress bar. Piped work that takes long says how far it is, a line at a time.
 pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> T) -> T {
     let bar = progress_bar(quiet, what);
-    let is_piped = !quiet && !std::io::stderr().is_terminal();
-    let mut said = Instant::now();
+    let mut lines = ProgressLines::new(quiet);
     let result = work(&mut Watch {
         interrupted: interrupted(),
         progress: &mut |done, expected| {
             bar.set_length(expected);
             bar.set_position(done);
-            if is_piped && said.elapsed() >= BETWEEN_LINES {
-                said = Instant::now();
+            lines.tell(|| {
                 let percent = 100.0 * done as f64 / expected.max(1) as f64;
-                say(&format!("{what}: {done} of {expected} frames, {percent:.0} %"));
-            }
+                format!("{what}: {done} of {expected} frames, {percent:.0} %")
+            });
         },
     });
     bar.finish_and_clear();

@@ -136,8 +136,11 @@ fn number(range: &Range, random: &mut Random) -> f64 {
 fn whatever_the_ranges_hold_ends_well() {
     let mut cases = Cases(vec![]);
     let Ok(()) = papers::each(&mut cases);
-    // Found by hand: eight terabytes, minutes of one frame, and a command buffer of 2,000 steps.
-    for words in ["--density=1x67108864x1", "--splats=4000x4000", "--splat-radius=1", "--frame=2000 --particles=100"] {
+    // Found by hand: eight terabytes, minutes of one frame, a command buffer of 2,000 steps, and days of them without a word.
+    let days = "--frame=100000000 --particles=100";
+    for words in
+        ["--density=1x67108864x1", "--splats=4000x4000", "--splat-radius=1", "--frame=2000 --particles=100", days]
+    {
         cases.0.push(("lava", words.split(' ').map(str::to_owned).collect()));
     }
     let (mut drawn, mut failures) = (0, vec![]);
