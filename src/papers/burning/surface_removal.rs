@@ -88,7 +88,7 @@ impl SurfaceRemoval {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
             match refinement {
                 None => {
-                    let step = step.with("Compacted", &compacted);
+                    let step = step.with("compacted", &compacted);
                     draw_order.iter().fold(step, |step, order| step.with("DrawOrder", order))
                 }
                 Some(refinement) => step
@@ -108,7 +108,7 @@ impl SurfaceRemoval {
         let count = over_all(count);
         let count = if refinement.is_none() { count.with("Clock", &buffers.clock) } else { count }.build(shaders)?;
         let scan = match refinement {
-            None => step("burning/surface-removal-scan-whole.comp").with("Compacted", &compacted),
+            None => step("burning/surface-removal-scan-whole.comp").with("compacted", &compacted),
             Some(_) => step("burning/surface-removal-scan-refined.comp"),
         };
         let scan = scan
