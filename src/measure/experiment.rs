@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::bench::load;
 use super::error::Error;
 use super::limits;
 use super::machine::{Drawn, Machine, MachineOptions};
@@ -244,6 +245,18 @@ impl<S: Study> Context<'_, S> {
             (None, Some(path)) => self.of_parts(machine, &all, path),
             (None, None) => self.measure(machine, &all),
         }
+    }
+
+    /// Opens the machine and measures the points, once the scene of each has been loaded and let go: what cannot be measured is
+    /// found before the first.
+    ///
+    /// # Errors
+    /// As [`load`], [`Context::open`] and [`Context::sweep`].
+    pub fn sweep_loaded(&self, points: &[Point<S>]) -> Result<(Machine, Swept), Error> {
+        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
+        let mut machine = self.open()?;
+        let swept = self.sweep(&mut machine, points)?;
+        Ok((machine, swept))
     }
 
     /// Measures the points under a progress bar.

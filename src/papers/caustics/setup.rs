@@ -192,12 +192,7 @@ impl Study for Setup {
     }
 
     fn identity(&self) -> Identity {
-        Identity {
-            preset: self.preset.clone(),
-            width: self.parameters.width,
-            height: self.parameters.height,
-            seed: self.parameters.seed,
-        }
+        Identity::new(&self.preset, (self.parameters.width, self.parameters.height), self.parameters.seed)
     }
 
     fn summary(&self) -> String {

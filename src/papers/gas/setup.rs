@@ -278,12 +278,7 @@ impl Study for Setup {
     }
 
     fn identity(&self) -> Identity {
-        Identity {
-            preset: self.preset.clone(),
-            width: self.parameters.width,
-            height: self.parameters.height,
-            seed: self.parameters.seed,
-        }
+        Identity::new(&self.preset, (self.parameters.width, self.parameters.height), self.parameters.seed)
     }
 
     fn config(&self, scene: &Scene, _: &Gas) -> Map<String, Value> {

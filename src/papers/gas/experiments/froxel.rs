@@ -8,7 +8,6 @@ use super::{Context, gpu_ms, point};
 use crate::image::Rgba8;
 use crate::image::compare;
 use crate::image::compare::{distances, heat_map};
-use crate::measure::bench::load;
 use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::Row;
 use crate::measure::{Error, Variant as _};
@@ -36,9 +35,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     let mut points = vec![point(Variant::Table.as_str(), 0.0, setup.clone(), Variant::Table)];
     let of_froxels = |&divisor: &u32| point(&divisor.to_string(), f64::from(divisor), with(divisor), Variant::Froxel);
     points.extend(divisors.iter().map(of_froxels));
-    points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, &points)?;
+    let (mut machine, swept) = context.sweep_loaded(&points)?;
 
     let fine = draw(&mut machine, &fine(&setup), Variant::Traced)?;
     context.picture("-fine.png", &fine)?;

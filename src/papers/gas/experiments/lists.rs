@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::{Context, gpu_ms};
 use crate::image::compare;
-use crate::measure::bench::{build, load};
+use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::parameter::Value as _;
 use crate::measure::result_table::ResultTable;
@@ -42,9 +42,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
             left_out: Vec::new(),
         })
         .collect();
-    points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, &points)?;
+    let (mut machine, swept) = context.sweep_loaded(&points)?;
     let table = table(&mut machine, &points, &swept.rows)?;
     let series = |(at, lists): (usize, &Lists)| {
         let rows = swept.rows.iter().skip(at).step_by(METHODS.len());

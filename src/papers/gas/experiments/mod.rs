@@ -16,7 +16,7 @@ use super::scenes::Preset;
 use super::setup::Setup;
 use crate::field;
 use crate::image::contact_sheet::{below_each_other, side_by_side};
-use crate::measure::bench::{build, load};
+use crate::measure::bench::build;
 use crate::measure::experiment::{self, Experiment};
 use crate::measure::parameter::{Parameter, Range};
 use crate::measure::result_table::ResultTable;
@@ -174,9 +174,7 @@ fn noise(context: &mut Context<'_>) -> Result<(), Error> {
     let constant = turbulent.with_constant_density();
     let points = [("turbulent", turbulent), ("constant", constant)]
         .map(|(label, setup)| point(label, 0.0, setup, Variant::None));
-    points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, &points)?;
+    let (machine, swept) = context.sweep_loaded(&points)?;
     let volume_ms = |label: &str| {
         let row = swept.rows.iter().find(|row| row.label == label)?;
         row.run.passes.iter().find(|p| p.name == "volume")?.gpu_ms.as_ref().map(|s| s.median)

@@ -6,7 +6,6 @@ use super::trade::{draw, gas_mask};
 use super::{Context, gpu_ms, point};
 use crate::image::compare;
 use crate::measure::Error;
-use crate::measure::bench::load;
 use crate::measure::machine::Machine;
 use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
@@ -81,9 +80,7 @@ fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title:
     for setup in setups {
         points.extend(variants.iter().map(|&variant| point(setup.scene.as_str(), 0.0, setup.clone(), variant)));
     }
-    points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, &points)?;
+    let (mut machine, swept) = context.sweep_loaded(&points)?;
     let mut rows = swept.rows.as_slice();
     let mut cells = Vec::new();
     for point in &points {

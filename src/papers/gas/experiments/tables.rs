@@ -1,7 +1,6 @@
 //! The paper's tables 1 and 2, ours beside the paper's.
 
 use super::Context;
-use crate::measure::bench::load;
 use crate::measure::compare::{Ratio, ratio_within_process};
 use crate::measure::sweep::{Point, Row};
 use crate::measure::{Error, Variant as _};
@@ -56,9 +55,7 @@ impl PaperTable {
     /// [`Error::Parameter`], [`Error::Input`], [`Error::Scene`], [`Error::Gpu`], [`Error::Plot`], [`Error::Output`].
     pub fn run(&self, context: &mut Context<'_>) -> Result<(), Error> {
         let points = self.points(&context.setup)?;
-        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-        let mut machine = context.open()?;
-        let swept = context.sweep(&mut machine, &points)?;
+        let (machine, swept) = context.sweep_loaded(&points)?;
         let rows = self.compared(swept.rows);
         let (table, plots) = (self.render(&rows, context.console.style()), [(".svg".to_owned(), self.plot(&rows)?)]);
         context.publish_runs(

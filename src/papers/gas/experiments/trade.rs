@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::{Context, gpu_ms, point};
 use crate::image::{Rgba8, compare};
-use crate::measure::bench::{build, load};
+use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
@@ -68,9 +68,7 @@ impl Trade {
         let counts = if given.is_empty() { self.counts } else { given };
         let point = |&count: &u32| point(&count.to_string(), f64::from(count), self.with(&setup, count), self.variant);
         let points: Vec<_> = counts.iter().map(point).collect();
-        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
-        let mut machine = context.open()?;
-        let swept = context.sweep(&mut machine, &points)?;
+        let (mut machine, swept) = context.sweep_loaded(&points)?;
         let table = self.table(&mut machine, &setup, &swept.rows)?;
         let points = swept.rows.iter().filter_map(|row| Some((row.x, row.run.median_frame_ms()?))).collect();
         let chart = LineChart {

@@ -22,11 +22,11 @@ use self::scaling::Axis;
 use super::parameters::Variant;
 use super::setup::Setup;
 use crate::field;
+use crate::measure::Error;
 use crate::measure::experiment::{self, Experiment, NamedTable};
 use crate::measure::machine::Machine;
 use crate::measure::parameter::{Parameter, Range};
 use crate::measure::sweep::{Point, Row};
-use crate::measure::{Error, bench};
 
 type Context<'a> = experiment::Context<'a, Setup>;
 
@@ -192,9 +192,7 @@ fn draw(context: &mut Context<'_>) -> Result<(), Error> {
 
 fn results(context: &mut Context<'_>) -> Result<(), Error> {
     let points = [Point { variants: vec![Variant::Paper], ..Point::single(context.name, context.setup.clone()) }];
-    check(&points)?;
-    let mut machine = context.open()?;
-    let mut swept = context.sweep(&mut machine, &points)?;
+    let (machine, mut swept) = context.sweep_loaded(&points)?;
     for row in &mut swept.rows {
         results::beside_the_thesis(&mut row.run);
     }
@@ -208,9 +206,7 @@ fn results(context: &mut Context<'_>) -> Result<(), Error> {
 
 fn readbacks(context: &mut Context<'_>) -> Result<(), Error> {
     let points = readback::points(&context.setup);
-    check(&points)?;
-    let mut machine = context.open()?;
-    let mut swept = context.sweep(&mut machine, &points)?;
+    let (machine, mut swept) = context.sweep_loaded(&points)?;
     for row in &mut swept.rows {
         results::beside_the_thesis(&mut row.run);
     }
@@ -223,9 +219,7 @@ fn readbacks(context: &mut Context<'_>) -> Result<(), Error> {
 
 fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     let points: Vec<_> = Axis::ALL.iter().flat_map(|axis| axis.points(&context.setup)).collect();
-    check(&points)?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, &points)?;
+    let (machine, swept) = context.sweep_loaded(&points)?;
     let table = scaling::table(&swept.rows);
     let mut plots = Vec::new();
     for axis in Axis::ALL {
@@ -329,9 +323,7 @@ fn measured(
     points: &[Point<Setup>],
     table: impl FnOnce(&mut Machine, &[Row]) -> Result<NamedTable, Error>,
 ) -> Result<(), Error> {
-    check(points)?;
-    let mut machine = context.open()?;
-    let swept = context.sweep(&mut machine, points)?;
+    let (mut machine, swept) = context.sweep_loaded(points)?;
     let table = table(&mut machine, &swept.rows)?;
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
     context.publish_runs(&machine, runs, String::new(), &[], &[table])?;
@@ -352,9 +344,4 @@ fn strip_of(context: &mut Context<'_>) -> Result<(), Error> {
         contact_sheet::draw(&mut machine, &context.setup, context.options.frame.unwrap_or(contact_sheet::LAST_FRAME))?;
     context.picture(".png", &sheet)?;
     Ok(())
-}
-
-/// Checks every point's input before the first is measured.
-fn check(points: &[Point<Setup>]) -> Result<(), Error> {
-    points.iter().try_for_each(|point| bench::load(&point.study).map(drop))
 }
