@@ -371,7 +371,7 @@ fn the_surface_is_as_hot_as_its_particles() {
     });
 }
 
-/// What glows is the face of a crust: as hot as the particles where they have lost nothing, hundreds of kelvin colder where they have lost little.
+/// The face of a crust is what glows: as hot as the particles where they have lost nothing, hundreds of kelvin colder where they have lost little.
 #[test]
 fn the_face_of_a_crust_glows() {
     gpu_test(|device| {

@@ -150,7 +150,7 @@ impl Heat {
         if conductance_w_m2k > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k } else { 0.0 }
     }
 
-    /// What a crust's face radiates over what reaches it, times the crust's thickness squared, for each kelvin that the particle below has lost,
+    /// Radiance of a crust's face over the heat that reaches it, times the crust's thickness squared, for each kelvin that the particle below has lost,
     /// per K^3: a crust through which the temperature changes evenly, and a particle whose loss is the crust's. 0 without a crust.
     pub fn crust_radiance(&self, spacing_m: f64) -> f64 {
         let lost_m2k_w = 2.0 * spacing_m / f64::from(self.crust_w_mk);
