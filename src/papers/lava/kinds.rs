@@ -1,21 +1,24 @@
 //! Chapter 3's kinds of lava as presets: small flows of basalt out of a vent. Viscosities are those of Giordano and Dingwell's fit (2003) at
-//! the temperature of eruption; heat is faster than rock's, so that minutes of cooling pass in seconds.
+//! the temperature of eruption; heat is faster than rock's, so that minutes of cooling pass in seconds. The crust's relief, colder and finer than the
+//! particles, is drawn over them.
 
 use glam::Vec3;
 
 use super::parameters::{Parameters, SurfaceKind};
+use super::sph::crust::Crust;
 use super::sph::heat::{Heat, Rheology};
 use super::sph::parameters::{Flow, Simulation};
 use super::sph::vent::Vent;
 use crate::scene::Camera;
 
-/// The fluid's own surface in black bodies' colours, from a camera.
+/// The fluid's own surface in black bodies' colours at dusk, from a camera.
 fn basalt(eye: Vec3, target: Vec3, exposure: f32, flow: Flow) -> Parameters {
     Parameters {
         simulation: Simulation::Sph,
         surface: SurfaceKind::Crossing,
         border_m: 0.0,
         is_blackbody: true,
+        daylight: 0.6,
         camera: Camera { eye, target, ..Parameters::default().camera },
         exposure,
         flow,
@@ -23,8 +26,9 @@ fn basalt(eye: Vec3, target: Vec3, exposure: f32, flow: Flow) -> Parameters {
     }
 }
 
-fn heat(melt_k: f32, capacity_j_kgk: f32, conductivity_w_mk: f32, crust_pa_s: f32) -> Heat {
-    Heat { melt_k, capacity_j_kgk, conductivity_w_mk, rheology: Rheology::Basalt, crust_pa_s, ..Heat::default() }
+fn heat(melt_k: f32, capacity_j_kgk: f32, conductivity_w_mk: f32, [crust_pa_s, crust_w_mk]: [f32; 2]) -> Heat {
+    let rheology = Rheology::Basalt;
+    Heat { melt_k, capacity_j_kgk, conductivity_w_mk, rheology, crust_pa_s, crust_w_mk, ..Heat::default() }
 }
 
 /// Section 3.2: 1,150 degrees Celsius, very fluid, a sheet a hand thick that chills after a metre or two.
@@ -34,7 +38,8 @@ pub fn pahoehoe() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(10.0),
         renewal_s: 6.0,
-        heat: heat(1423.0, 12.0, 20.0, 1000.0),
+        heat: heat(1423.0, 12.0, 20.0, [1000.0, 12.0]),
+        crust: Crust { pieces: 1.5, ..Crust::default() },
         vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2 },
         ..Flow::default()
     };
@@ -46,7 +51,8 @@ pub fn pahoehoe() -> Parameters {
         splats: [320, 160],
         splat_radius_m: 0.02,
         rock_tile_m: 0.8,
-        ..basalt(Vec3::new(2.6, 1.1, 1.9), Vec3::new(1.1, 0.0, 0.75), 3.0, flow)
+        gloss: 0.3,
+        ..basalt(Vec3::new(2.5, 0.8, 2.0), Vec3::new(1.0, 0.05, 0.8), 4.0, flow)
     }
 }
 
@@ -57,7 +63,8 @@ pub fn ropy() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(14.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 12.0, 6.0, 2500.0),
+        heat: heat(1423.0, 12.0, 6.0, [2500.0, 4.0]),
+        crust: Crust { skin_m: 0.006, ..Crust::default() },
         ..Flow::default()
     };
     Parameters {
@@ -67,8 +74,9 @@ pub fn ropy() -> Parameters {
         density: [96, 28, 48],
         splats: [240, 120],
         splat_radius_m: 0.01,
-        rock_tile_m: 0.5,
-        ..basalt(Vec3::new(1.5, 0.75, 0.95), Vec3::new(0.75, 0.05, 0.3), 6.0, flow)
+        rock_tile_m: 0.25,
+        gloss: 0.3,
+        ..basalt(Vec3::new(1.35, 0.5, 0.8), Vec3::new(0.8, 0.08, 0.3), 6.0, flow)
     }
 }
 
@@ -79,7 +87,8 @@ pub fn toes() -> Parameters {
         viscosity_pa_s: 122.0,
         slope_deg: Some(4.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 12.0, 10.0, 1200.0),
+        heat: heat(1423.0, 12.0, 10.0, [1200.0, 8.0]),
+        crust: Crust { pieces: 1.5, ..Crust::default() },
         vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
         ..Flow::default()
     };
@@ -92,6 +101,7 @@ pub fn toes() -> Parameters {
         splat_radius_m: 0.012,
         rock_tile_m: 0.5,
         time_step_s: 1.0 / 20.0,
+        gloss: 0.3,
         ..basalt(Vec3::new(1.8, 0.85, 1.4), Vec3::new(0.65, 0.0, 0.65), 6.0, flow)
     }
 }
@@ -103,7 +113,8 @@ pub fn aa() -> Parameters {
         viscosity_pa_s: 941.0,
         slope_deg: Some(18.0),
         renewal_s: 6.0,
-        heat: heat(1323.0, 6.0, 60.0, 9000.0),
+        heat: heat(1323.0, 6.0, 60.0, [9000.0, 1.5]),
+        crust: Crust { pieces: 1.5, jumble: 0.8, healing_s: 0.6, ..Crust::default() },
         vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
         ..Flow::default()
     };
@@ -114,7 +125,7 @@ pub fn aa() -> Parameters {
         density: [120, 48, 66],
         splats: [330, 180],
         splat_radius_m: 0.06,
-        rock_tile_m: 2.0,
-        ..basalt(Vec3::new(9.5, 3.2, 6.4), Vec3::new(3.6, 0.3, 2.9), 6.0, flow)
+        rock_tile_m: 1.0,
+        ..basalt(Vec3::new(8.3, 2.3, 6.2), Vec3::new(3.2, 0.2, 2.9), 6.0, flow)
     }
 }

@@ -64,6 +64,11 @@ impl Setup {
         Setup { parameters, ..Setup::default() }
     }
 
+    /// Those numbers of a crust whose cracks are its own.
+    fn crusted(parameters: Parameters) -> Self {
+        Setup { rock: RockSource::Crust, ..Setup::of(parameters) }
+    }
+
     /// Checks the parameters, and that what is drawn can be drawn together.
     ///
     /// # Errors
@@ -277,14 +282,14 @@ impl Study for Setup {
                 },
             },
             kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
-                Setup::of(kinds::pahoehoe())
+                Setup::crusted(kinds::pahoehoe())
             }),
-            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, halted by a wall", || Setup::of(kinds::ropy())),
+            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, halted by a wall", || Setup::crusted(kinds::ropy())),
             kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
                 bed: Some(HeightMapSource::Jacksboro),
-                ..Setup::of(kinds::toes())
+                ..Setup::crusted(kinds::toes())
             }),
-            kind("aa", "Section 3.3: thicker, more viscous and yet faster", || Setup::of(kinds::aa())),
+            kind("aa", "Section 3.3: thicker, more viscous and yet faster", || Setup::crusted(kinds::aa())),
         ]
     }
 
