@@ -114,7 +114,7 @@ pub fn aa() -> Parameters {
         slope_deg: Some(18.0),
         renewal_s: 6.0,
         heat: heat(1323.0, 6.0, 60.0, [9000.0, 1.5]),
-        crust: Crust { pieces: 1.5, jumble: 0.8, healing_s: 0.6, ..Crust::default() },
+        crust: Crust { pieces: 1.5, jumble: 0.8, healing_s: 1.5, ..Crust::default() },
         vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
         ..Flow::default()
     };
@@ -126,6 +126,6 @@ pub fn aa() -> Parameters {
         splats: [330, 180],
         splat_radius_m: 0.06,
         rock_tile_m: 1.0,
-        ..basalt(Vec3::new(8.3, 2.3, 6.2), Vec3::new(3.2, 0.2, 2.9), 6.0, flow)
+        ..basalt(Vec3::new(7.2, 2.0, 5.6), Vec3::new(2.9, 0.25, 2.9), 6.0, flow)
     }
 }
