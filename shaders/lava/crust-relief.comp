@@ -117,12 +117,13 @@ Surface surface_at(vec2 share) {
 }
 
 // Height of a rope over the mean: round crests, creased hollows. Its slopes are those of a sine, of at most `steepness`; an arc of it is
-// longer than its chord by the root of 1 + steepness^2 / 2, within 2 %, which is what the skin has been shortened by.
+// longer than its chord by the root of 1 + steepness^2 / 2, within 2 %, which is what the skin has been shortened by. Folds that have come closer
+// than half their length are pressed together, at a third into one.
 float rope_m(float laid_m, float shortening) {
     float shortened = max(shortening, 1.0);
     float steepness = min(sqrt(2.0 * (shortened * shortened - 1.0)), STEEPEST);
     float turns = laid_m / crust.rope_m;
-    float height = steepness * crust.rope_m / (TURN * shortened);
+    float height = clamp(3.0 - shortened, 0.0, 1.0) * steepness * crust.rope_m / (TURN * shortened);
     return height * (2.0 * abs(cos(0.5 * TURN * turns)) - 4.0 / (0.5 * TURN));
 }
 

@@ -68,15 +68,15 @@ pub fn ropy() -> Parameters {
         ..Flow::default()
     };
     Parameters {
-        space_m: Vec3::new(1.2, 0.35, 0.6),
+        space_m: Vec3::new(1.2, 0.35, 0.9),
         particles: 4000,
         radius_m: 0.05,
-        density: [96, 28, 48],
-        splats: [240, 120],
+        density: [96, 28, 72],
+        splats: [240, 180],
         splat_radius_m: 0.01,
         rock_tile_m: 0.25,
         gloss: 0.3,
-        ..basalt(Vec3::new(1.35, 0.5, 0.8), Vec3::new(0.8, 0.08, 0.3), 6.0, flow)
+        ..basalt(Vec3::new(1.5, 0.45, 1.0), Vec3::new(0.8, 0.06, 0.36), 6.0, flow)
     }
 }
 

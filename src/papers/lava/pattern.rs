@@ -102,7 +102,7 @@ impl Noise {
         let broad = stretched(self.octaves(place, 4, 6, 70), 1.8);
         let grain = stretched(self.octaves(place, 40, 3, 80), 2.2);
         let pits = 1.0 - stretched(self.smooth(place, 56, 90), 3.0);
-        (0.62 + 0.1 * broad + 0.28 * grain) * (1.0 - 0.5 * pits * pits * pits)
+        (0.62 + 0.1 * broad + 0.28 * grain) * (1.0 - 0.25 * pits * pits * pits)
     }
 
     fn plates(&self, place: [f32; 2]) -> f32 {

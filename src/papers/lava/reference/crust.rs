@@ -175,7 +175,9 @@ impl Crust {
                 let turn = TAU * (place.x - mean.carried[axis]) / self.rope;
                 // Slopes a sin(turn / 2) over half a turn either way from a crest, less the mean height.
                 let height = 2.0 * (0.5 * turn).cos().abs() - 4.0 / PI;
-                relief += grown * share * fold_steepness(shortened) * chord / TAU * height;
+                // Pressed together from a half to a third of the length on.
+                let apart = (3.0 - shortened).clamp(0.0, 1.0);
+                relief += grown * share * apart * fold_steepness(shortened) * chord / TAU * height;
             }
         }
         if self.piece > 0.0 {
