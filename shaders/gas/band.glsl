@@ -19,9 +19,16 @@ uint list_of(uvec2 pixel) {
     return (pixel.y - band.list_row) * frame.size.x + pixel.x;
 }
 
+// The place of a thread's pixel in the dispatch. Of the 8 x 8 pixels of a workgroup eight threads in a row have 4 x 2, not 8 x 1: a
+// processor that does eight in step waits for the one that has most to do, and near pixels have as much.
+uvec2 place_of(uvec2 thread) {
+    uvec2 within = thread % uvec2(8u);
+    return thread - within + uvec2((within.x & 3u) | ((within.y & 1u) << 2u), (within.y & 6u) | (within.x >> 2u));
+}
+
 // The pixel of a thread; in no dispatch where is_in_band says no.
 uvec2 pixel_of(uvec2 thread) {
-    return thread + uvec2(0u, band.first_row);
+    return place_of(thread) + uvec2(0u, band.first_row);
 }
 
 bool is_in_band(uvec2 pixel) {

@@ -25,7 +25,8 @@ bool is_before(Link link, Surface surface, uint slot) {
 void main() {
     read_counts();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
-    uint lane = gl_LocalInvocationID.y * TILE + gl_LocalInvocationID.x;
+    uvec2 place = place_of(gl_GlobalInvocationID.xy) % TILE;
+    uint lane = place.y * TILE + place.x;
     bool is_mine = is_in_band(pixel);
     uint list = is_mine ? list_of(pixel) : 0u;
     Chunks chunks = chunks_of_call(tile_of_group(), is_mine);
@@ -48,10 +49,10 @@ void main() {
     uint before = is_mine ? losses[list] * min(band.first_triangle + band.call, 1u) : 0u;
     bool has_lost = (before & LOST) != 0u;
     uint bits = 0u;
-    while (bits != 0u || chunk < chunks.to) {
+    do {
         uint triangle = NONE;
-        while (triangle == NONE && (bits != 0u || chunk < chunks.to)) {
-            if (bits == 0u) {
+        do {
+            if (bits == 0u && chunk < chunks.to) {
                 bits = tile_pixels[chunk * 64u + lane].x;
                 chunk++;
             }
@@ -62,7 +63,7 @@ void main() {
                 bool may_count = !has_lost || uintBitsToFloat(next.y) <= last_m * (1.0 + 1.0e-6);
                 triangle = may_count ? next.x : NONE;
             }
-        }
+        } while (triangle == NONE && (bits != 0u || chunk < chunks.to));
         if (triangle != NONE) {
             Fragment fragment = fragment_in(triangle, vec2(pixel));
             bool is_full = kept == counts.nearest;
@@ -82,7 +83,7 @@ void main() {
                 last_m = kept == counts.nearest ? mean_depth(link_of(links[first + kept - 1u])) : 1.0e30;
             }
         }
-    }
+    } while (bits != 0u || chunk < chunks.to);
     if (bits != 0u || chunk < chunks.to || is_cut) {
         is_ended = 1u;
     }

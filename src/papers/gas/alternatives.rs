@@ -47,7 +47,7 @@ impl Alternatives {
                 .help(
                     "The way to the lists of fragments. linked: the rasteriser draws a box around each triangle, and \
                      fragments are linked as they come; tiles: triangles are put into tiles of 8 x 8 pixels, and of what \
-                     an opaque triangle hides that fills a pixel little is kept; k:N: as tiles, but a \
+                     an opaque triangle hides that fills a pixel only the next fragment is kept; k:N: as tiles, but a \
                      pixel keeps its N nearest fragments alone, 1 to 32. bench takes several, comma-separated, and \
                      measures them in turn",
                 )

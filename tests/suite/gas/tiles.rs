@@ -20,12 +20,12 @@ fn with(lists: Lists, parameters: &Parameters) -> Parameters {
     Parameters { lists, ..parameters.clone() }
 }
 
-/// The list is that of `linked` up to the first fragment that hides all behind it. Behind it some of `linked`'s may be left: those of
-/// triangles that begin before it, and a dispatch cuts by the covers among its own triangles, of which it follows from nothing
-/// which those are in a tile that takes several.
+/// The list is that of `linked` up to the first fragment that hides all behind it, and one more, of which a fraction may show.
+/// Behind them some of `linked`'s may be left: a dispatch cuts by the covers among its own triangles, and which those are of a
+/// tile that takes several follows from nothing.
 fn is_cut_behind_its_cover(list: &[Fragment], linked: &[Fragment]) -> bool {
     let is_cover = |f: &Fragment| f.mask == u32::MAX && f.opacity == 1.0;
-    let needed = linked.iter().position(is_cover).map_or(linked.len(), |cover| cover + 1);
+    let needed = linked.iter().position(is_cover).map_or(linked.len(), |cover| linked.len().min(cover + 2));
     let (shown, mut hidden) = (&linked[..needed], linked[needed..].iter());
     list.starts_with(shown) && list[needed..].iter().all(|left| hidden.any(|fragment| fragment == left))
 }
