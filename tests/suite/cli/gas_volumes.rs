@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fumarole::image::read_png;
 
+use super::dumps::read_npy;
 use super::program::{ONCE, Program, assert_schema, file, folder, gas, read_json, sha256};
 
 const SMALL: &str = "--size 45x31 --steps 12 --table 8 --camera 0,1.5,6,0,1.5,0 --tau 20";
@@ -104,6 +105,49 @@ fn a_scene_without_volumes_shows_a_file() {
     let plain = draw("plain.png", gas("render").on_test_device());
     let filled = draw("filled.png", gas("render").on_test_device().arg("--volume-file").arg(&path).args("--tau 20"));
     assert!(plain != filled);
+}
+
+/// A scan of a head, `assets/volumes/anatomical.nii`: its densities are the values of its own bytes, interpolated in double precision,
+/// the patient upright and facing +z. Without a range what lies below 0 is refused.
+#[test]
+fn a_scan_of_a_head_has_its_own_densities() {
+    const COUNTS: [usize; 3] = [33, 41, 25]; // to the left, to the front, up
+    const SIDE: usize = 8; // of the table
+    let out = folder();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/volumes/anatomical.nii");
+    let program = small("render --quiet", &path, "@0,0.5,0,0,2").args("--variant table --volume-range 2000,16000");
+    program.args("--image head.png --dump density-table=table.npy").inside(out.path()).run().succeeded();
+    let (_, table) = read_npy(&out.path().join("table.npy"));
+    let bytes = std::fs::read(&path).unwrap();
+    let value = |at: [usize; 3]| {
+        let byte = 352 + 2 * ((at[2] * COUNTS[1] + at[1]) * COUNTS[0] + at[0]);
+        f64::from(i16::from_be_bytes([bytes[byte], bytes[byte + 1]]))
+    };
+    // The sample before an entry of the table along an axis of the file, and the way from it to the next.
+    let place = |entry: usize, count: usize| {
+        let at = (entry as f64 / (SIDE - 1) as f64 * count as f64 - 0.5).clamp(0.0, (count - 1) as f64);
+        let low = (at as usize).min(count - 2);
+        (low, at - low as f64)
+    };
+    assert_eq!(table.len(), SIDE.pow(3));
+    let (mut worst, mut sum) = (0.0_f64, 0.0);
+    for (i, density) in table.iter().enumerate() {
+        let [x, y, z] = [i % SIDE, i / SIDE % SIDE, i / SIDE.pow(2)];
+        let places = [place(x, COUNTS[0]), place(z, COUNTS[1]), place(y, COUNTS[2])];
+        let mut expected = 0.0;
+        for corner in 0..8 {
+            let is_next = [0, 1, 2].map(|axis| corner >> axis & 1);
+            let weight = |axis: usize| if is_next[axis] == 1 { places[axis].1 } else { 1.0 - places[axis].1 };
+            expected += value([0, 1, 2].map(|axis| places[axis].0 + is_next[axis])) * weight(0) * weight(1) * weight(2);
+        }
+        let expected = ((expected - 2000.0) / 14000.0).clamp(0.0, 1.0);
+        worst = worst.max((density - expected).abs());
+        sum += density;
+    }
+    assert!(worst < 1e-5, "{worst}");
+    assert!((0.2..0.6).contains(&(sum / table.len() as f64)), "{sum}");
+    let refused = small("render --image never.png", &path, "").run();
+    refused.refused(2, &["anatomical.nii", "sample (22, 3, 1) is -277, below density 0", "--volume-range"]);
 }
 
 /// A file of densities and temperatures glows in its temperatures' colours, and the more the lower the white one is.
