@@ -14,17 +14,9 @@ layout(local_size_x = 64) in;
 #include "lava/sph-inside.glsl"
 #include "lava/sph-lists.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Predicted {
-    vec4 list[]; // metres
-} predicted;
+layout(set = 0, binding = 4) uniform texture2D pushing; // metres, and lambda times h^-2
 
-layout(set = 0, binding = 5, std430) readonly buffer Factors {
-    vec2 list[]; // lambda times h^-2, and the density over that at rest
-} factors;
-
-layout(set = 0, binding = 6, std430) buffer Corrected {
-    vec4 list[]; // metres
-} corrected;
+layout(set = 0, binding = 6, rgba32f) uniform image2D corrected; // metres
 
 layout(set = 0, binding = 14, std430) readonly buffer Unmet {
     uint any[3]; // of `sph-density`
@@ -35,8 +27,9 @@ float factor;
 vec3 pushed = vec3(0.0);
 
 void gather(uint i) {
-    vec3 way = apart(place_m - predicted.list[i].xyz) / flow.support_m;
-    pushed += (factor + factors.list[i].x) * slope(length(way)) * way;
+    vec4 other = texelFetch(pushing, texel_of(i), 0);
+    vec3 way = apart(place_m - other.xyz) / flow.support_m;
+    pushed += (factor + other.w) * slope(length(way)) * way;
 }
 
 #include "lava/sph-gather.glsl"
@@ -46,13 +39,14 @@ void main() {
     if (at >= flow.particles) {
         return;
     }
-    place_m = predicted.list[at].xyz;
+    vec4 own = texelFetch(pushing, texel_of(at), 0);
+    place_m = own.xyz;
     if (unmet.any[(flow.turn + 2u) % 3u] == 0u) {
-        corrected.list[at] = vec4(place_m, 0.0);
+        imageStore(corrected, texel_of(at), vec4(place_m, 0.0));
         return;
     }
-    factor = factors.list[at].x;
+    factor = own.w;
     gather_around(at, began_m(at));
     pushed = flow.volume * pushed + factor * wall_gradient(walls_at(place_m));
-    corrected.list[at] = vec4(inside(place_m + flow.support_m * pushed), 0.0);
+    imageStore(corrected, texel_of(at), vec4(inside(place_m + flow.support_m * pushed), 0.0));
 }

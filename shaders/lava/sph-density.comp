@@ -15,9 +15,7 @@ layout(local_size_x = 64) in;
 #include "lava/sph-walls.glsl"
 #include "lava/sph-lists.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Predicted {
-    vec4 list[]; // metres
-} predicted;
+layout(set = 0, binding = 4) uniform texture2D predicted; // metres
 
 layout(set = 0, binding = 5, std430) buffer Factors {
     vec2 list[]; // lambda times h^-2, and the density over that at rest
@@ -26,6 +24,8 @@ layout(set = 0, binding = 5, std430) buffer Factors {
 layout(set = 0, binding = 6, std430) buffer Pressures {
     float list[]; // sum of the factors: before the first correction that of the last step
 } pressures;
+
+layout(set = 0, binding = 7, rgba32f) uniform image2D pushing; // metres, and the factor
 
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // 1 where the correction of this turn finds any too dense
@@ -45,7 +45,7 @@ vec3 own = vec3(0.0);
 float others = 0.0;
 
 void gather(uint i) {
-    vec3 way = apart(place_m - predicted.list[i].xyz) / flow.support_m;
+    vec3 way = apart(place_m - texelFetch(predicted, texel_of(i), 0).xyz) / flow.support_m;
     float q = length(way);
     sum += kernel(q);
     vec3 gradient = flow.volume * slope(q) * way;
@@ -64,10 +64,11 @@ void main() {
     if (at == 0u) {
         unmet.any[(flow.turn + 1u) % 3u] = 0u;
     }
+    place_m = texelFetch(predicted, texel_of(at), 0).xyz;
     if (is_met) {
+        imageStore(pushing, texel_of(at), vec4(place_m, 0.0));
         return;
     }
-    place_m = predicted.list[at].xyz;
     gather_around(at, began_m(at));
     Walls walls = walls_at(place_m);
     float density = flow.volume * sum + wall_share(walls);
@@ -77,6 +78,7 @@ void main() {
     push = max(push, density > CLOSE ? flow.kept * LASTS * sum_before : 0.0);
     pressures.list[at] = -push - (1.0 - flow.kept) * sum_before;
     factors.list[at] = vec2(-push, density);
+    imageStore(pushing, texel_of(at), vec4(place_m, -push));
     if (density > DENSE) {
         unmet.any[flow.turn] = 1u;
     }

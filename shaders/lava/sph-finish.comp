@@ -12,9 +12,7 @@ layout(local_size_x = 64) in;
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Predicted {
-    vec4 list[]; // metres
-} predicted;
+layout(set = 0, binding = 4) uniform texture2D predicted; // metres
 
 layout(set = 0, binding = 5, std430) readonly buffer Items {
     uvec2 list[]; // cell and particle, by cells
@@ -36,9 +34,7 @@ layout(set = 0, binding = 13, std430) buffer Carried {
     vec4 list[]; // the same by cells
 } carried;
 
-layout(set = 0, binding = 9, std430) readonly buffer From {
-    vec4 list[]; // metres per second: the last iterate of the viscosity
-} from;
+layout(set = 0, binding = 9) uniform texture2D from; // metres per second: the last iterate of the viscosity
 
 layout(set = 0, binding = 14, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second: its right side
@@ -47,6 +43,10 @@ layout(set = 0, binding = 14, std430) readonly buffer Pushed {
 layout(set = 0, binding = 15, std430) readonly buffer Pressures {
     float list[]; // sum of the constraint's factors
 } pressures;
+
+layout(set = 0, binding = 17, std430) buffer Arrived {
+    vec4 list[]; // metres, by cells
+} arrived;
 
 layout(set = 0, binding = 16, std430) buffer Lasting {
     vec4 list[]; // by particles: metres per second that viscosity changed, and that sum
@@ -59,7 +59,8 @@ void main() {
     }
     uint particle = items.list[at].y;
     ivec2 texel = ivec2(particle % flow.width, particle / flow.width);
-    vec3 place_m = predicted.list[at].xyz;
+    vec3 place_m = texelFetch(predicted, texel_of(at), 0).xyz;
+    arrived.list[at] = vec4(place_m, 0.0);
     vec2 turns = flow.periodic * floor(place_m.xz / flow.space_m.xz);
     vec3 within = vec3(place_m.x - turns.x * flow.space_m.x, place_m.y, place_m.z - turns.y * flow.space_m.z);
     vec2 way_m = place_m.xz - began_m(at).xz;
@@ -67,7 +68,7 @@ void main() {
     vec4 carried_m = kept.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
     carried.list[at] = carried_m;
     imageStore(carried_after, texel, carried_m);
-    lasting.list[particle] = vec4(from.list[at].xyz - pushed.list[at].xyz, pressures.list[at]);
+    lasting.list[particle] = vec4(texelFetch(from, texel_of(at), 0).xyz - pushed.list[at].xyz, pressures.list[at]);
     imageStore(positions, texel, vec4(within, 0.0));
     imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, heat.list[at].x));
 }

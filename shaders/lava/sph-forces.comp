@@ -20,9 +20,7 @@ layout(set = 0, binding = 6, std430) buffer Pushed {
     vec4 list[]; // metres per second, and kelvin as the step begins
 } pushed;
 
-layout(set = 0, binding = 7, std430) buffer To {
-    vec4 list[]; // metres per second
-} to;
+layout(set = 0, binding = 7, rgba32f) uniform image2D to; // metres per second
 
 layout(set = 0, binding = 8, std430) buffer Change {
     vec4 list[]; // metres per second
@@ -35,6 +33,8 @@ layout(set = 0, binding = 9, std430) readonly buffer Lasting {
 layout(set = 0, binding = 11, std430) buffer Pressures {
     float list[]; // that sum by cells
 } pressures;
+
+layout(set = 0, binding = 15, rgba32f) uniform image2D began; // metres
 
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // of `sph-viscosity`
@@ -55,7 +55,8 @@ void main() {
     vec4 after = before + vec4(flow.time_step_s * flow.gravity_m_s2, 0.0);
     pushed.list[at] = after;
     vec4 last = flow.kept * lasting.list[particle];
-    to.list[at] = vec4(after.xyz + last.xyz, 0.0);
+    imageStore(to, texel_of(at), vec4(after.xyz + last.xyz, 0.0));
+    imageStore(began, texel_of(at), vec4(began_m(at), 0.0));
     pressures.list[at] = last.w;
     change.list[at] = vec4(0.0);
 }

@@ -15,6 +15,7 @@ layout(local_size_x = 64) in;
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
 #include "lava/sph-lists.glsl"
+#include "lava/sph-began.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second, and kelvin as the step begins
@@ -78,7 +79,7 @@ float conducted = 0.0;
 vec3 gradient = vec3(0.0);
 
 void gather(uint i) {
-    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    vec3 way = apart(place_m - began_near_m(i)) / flow.support_m;
     float weight = slope(length(way));
     conducted -= weight * (kelvin_of(i) - kelvin);
     gradient += weight * way;

@@ -1,8 +1,7 @@
 // The particles near each one: lists of them by `sph-neighbours`.
 
-layout(set = 0, binding = 12, std430) readonly buffer Neighbours {
-    uint list[]; // by cells, the first of all particles, then the second of all
-} neighbours;
+// Four numbers by cells in a texel, which are exact up to 16,777,216.
+layout(set = 0, binding = 12) uniform texture2D neighbours;
 
 layout(set = 0, binding = 13, std430) readonly buffer NeighbourCounts {
     uint list[]; // of each particle's, or WALKS
@@ -14,8 +13,9 @@ uvec2 reach_of(uint at) {
     return count == WALKS ? uvec2(0u, 9u) : uvec2(count, 0u);
 }
 
-uint neighbour_of(uint at, uint n) {
-    return neighbours.list[n * flow.listed + at];
+// Four of its list from one on.
+vec4 neighbours_of(uint at, uint first) {
+    return texelFetch(neighbours, four_of(at, first), 0);
 }
 
 // One of the nine around a particle.

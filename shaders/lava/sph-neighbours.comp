@@ -6,40 +6,36 @@
 // places a list reaches farther than the kernel, since corrections move particles. More than a list holds, and particles
 // that none was made for, are left to walks over all of 27 cells.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 
-layout(set = 0, binding = 12, std430) buffer Neighbours {
-    uint list[]; // by cells, the first of all particles, then the second of all
-} neighbours;
+layout(set = 0, binding = 4) uniform texture2D places; // metres
+
+layout(set = 0, binding = 12, rgba32f) uniform image2D neighbours; // four numbers by cells in a texel
 
 layout(set = 0, binding = 13, std430) buffer NeighbourCounts {
     uint list[]; // of each particle's, or WALKS
 } neighbour_counts;
 
 #ifdef PLACES_BEGAN
-layout(set = 0, binding = 4, std430) buffer Crowded {
+layout(set = 0, binding = 5, std430) buffer Crowded {
     uint any; // 1 where a stretch has more particles than a loop may
 } crowded;
 
 const float REACH = 1.0; // in radii of the kernel
-
-vec3 place_of(uint at) {
-    return began_m(at);
-}
 #else
-layout(set = 0, binding = 4, std430) readonly buffer Predicted {
-    vec4 list[]; // metres
-} predicted;
-
 const float REACH = 1.0833;
-
-vec3 place_of(uint at) {
-    return predicted.list[at].xyz;
-}
 #endif
+
+// The last of four that are there come first.
+vec4 begun(vec4 four, uint count) {
+    uint rest = count & 3u;
+    return rest == 1u ? four.wxyz : rest == 2u ? four.zwxy : four.yzwx;
+}
 
 void main() {
     uint at = element(64u);
@@ -47,10 +43,11 @@ void main() {
         return;
     }
     vec3 began = began_m(at);
-    vec3 place_m = place_of(at);
+    vec3 place_m = texelFetch(places, texel_of(at), 0).xyz;
     float reach_m = REACH * flow.support_m;
     uint most = at < flow.listed ? LISTED : 0u;
     uint count = 0u;
+    vec4 four = vec4(0.0);
     bool is_crowded = false;
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
@@ -58,14 +55,18 @@ void main() {
             uint end = min(stretch.y, stretch.x + MOST);
             is_crowded = is_crowded || end < stretch.y;
             for (uint i = stretch.x; i < end; i++) {
-                vec3 way_m = apart(place_m - place_of(i));
+                vec3 way_m = apart(place_m - texelFetch(places, texel_of(i), 0).xyz);
                 bool is_near = dot(way_m, way_m) < reach_m * reach_m;
-                if (is_near && count < most) {
-                    neighbours.list[count * flow.listed + at] = i;
-                }
+                four = is_near ? vec4(four.yzw, float(i)) : four;
                 count += is_near ? 1u : 0u;
+                if (is_near && (count & 3u) == 0u && count <= most) {
+                    imageStore(neighbours, four_of(at, count - 4u), four);
+                }
             }
         }
+    }
+    if ((count & 3u) != 0u && count <= most) {
+        imageStore(neighbours, four_of(at, count), begun(four, count));
     }
     neighbour_counts.list[at] = count <= most ? count : WALKS;
 #ifdef PLACES_BEGAN

@@ -11,13 +11,9 @@ layout(local_size_x = 64) in;
 #include "lava/bed.glsl"
 #include "lava/sph-inside.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer From {
-    vec4 list[]; // metres per second
-} from;
+layout(set = 0, binding = 4) uniform texture2D from; // metres per second
 
-layout(set = 0, binding = 5, std430) buffer Predicted {
-    vec4 list[]; // metres
-} predicted;
+layout(set = 0, binding = 5, rgba32f) uniform image2D predicted; // metres
 
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // of `sph-density`
@@ -32,5 +28,6 @@ void main() {
         unmet.any[0] = 0u;
         unmet.any[2] = 1u;
     }
-    predicted.list[at] = vec4(inside(began_m(at) + flow.time_step_s * from.list[at].xyz), 0.0);
+    vec3 velocity = texelFetch(from, texel_of(at), 0).xyz;
+    imageStore(predicted, texel_of(at), vec4(inside(began_m(at) + flow.time_step_s * velocity), 0.0));
 }

@@ -5,11 +5,14 @@
 // rate of strain that the last step left. It is regularised by a largest viscosity (O'Donovan and Tanner 1984). Pressure shakes
 // single particles, which is no flow: the tensor is the mean of those around, by the kernel.
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 #include "lava/sph-lists.glsl"
+#include "lava/sph-began.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Along {
     vec4 list[]; // rates of strain per second: the tensor's diagonal
@@ -41,7 +44,7 @@ vec3 beside = vec3(0.0);
 float weights = 0.0;
 
 void gather(uint i) {
-    float weight = kernel(length(apart(place_m - began_m(i))) / flow.support_m);
+    float weight = kernel(length(apart(place_m - began_near_m(i))) / flow.support_m);
     diagonal += weight * along.list[i].xyz;
     beside += weight * across.list[i].xyz;
     weights += weight;

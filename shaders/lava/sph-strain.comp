@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
 #include "lava/sph-lists.glsl"
+#include "lava/sph-began.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second after gravity
@@ -62,7 +63,7 @@ mat3 slopes = mat3(0.0);
 mat3 moment = mat3(0.0);
 
 void gather(uint i) {
-    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    vec3 way = apart(place_m - began_near_m(i)) / flow.support_m;
     vec3 weight = flow.laplacian * slope(length(way)) * way;
     slopes += outer(pushed.list[i].xyz - pushed_m_s, weight);
     moment -= outer(way, weight);

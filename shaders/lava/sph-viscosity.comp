@@ -14,11 +14,10 @@ layout(local_size_x = 64) in;
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 #include "lava/sph-lists.glsl"
+#include "lava/sph-began.glsl"
 #include "lava/sph-drag.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Drags {
-    float list[]; // as the lists
-} drags;
+layout(set = 0, binding = 4) uniform texture2D drags; // as the lists
 
 layout(set = 0, binding = 5, std430) readonly buffer WallDrags {
     float list[];
@@ -28,13 +27,9 @@ layout(set = 0, binding = 6, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second
 } pushed;
 
-layout(set = 0, binding = 7, std430) readonly buffer From {
-    vec4 list[];
-} from;
+layout(set = 0, binding = 7) uniform texture2D from;
 
-layout(set = 0, binding = 8, std430) buffer To {
-    vec4 list[];
-} to;
+layout(set = 0, binding = 8, rgba32f) uniform image2D to;
 
 layout(set = 0, binding = 11, std430) buffer Change {
     vec4 list[];
@@ -43,6 +38,10 @@ layout(set = 0, binding = 11, std430) buffer Change {
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // 1 where an iteration of this turn leaves a residual that is not small
 } unmet;
+
+vec3 velocity_of(uint at) {
+    return texelFetch(from, texel_of(at), 0).xyz;
+}
 
 // Of what gravity changes in a step.
 const float SMALL = 3.0e-4;
@@ -56,15 +55,22 @@ void main() {
     if (at == 0u) {
         unmet.any[(flow.turn + 1u) % 3u] = 0u;
     }
-    vec3 velocity = from.list[at].xyz;
+    vec3 velocity = velocity_of(at);
     if (is_met) {
-        to.list[at] = vec4(velocity, 0.0);
+        imageStore(to, texel_of(at), vec4(velocity, 0.0));
         return;
     }
     uvec2 reach = reach_of(at);
     vec3 dragged = wall_drags.list[at] * velocity;
-    for (uint n = 0u; n < reach.x; n++) {
-        dragged += drags.list[n * flow.listed + at] * (velocity - from.list[neighbour_of(at, n)].xyz);
+    for (uint first = 0u; first < reach.x; first += 4u) {
+        vec4 four = neighbours_of(at, first);
+        vec4 drag = texelFetch(drags, four_of(at, first), 0);
+        uint count = min(reach.x - first, 4u);
+        for (uint n = 0u; n < count; n++) {
+            dragged += drag.x * (velocity - velocity_of(uint(four.x)));
+            drag = drag.yzwx;
+            four = four.yzwx;
+        }
     }
     if (reach.y > 0u) {
         vec3 place_m = began_m(at);
@@ -72,14 +78,14 @@ void main() {
         for (uint n = 0u; n < reach.y; n++) {
             uvec2 stretch = nth_stretch(place_m, n);
             for (uint i = stretch.x; i < stretch.y; i++) {
-                dragged += drag_by(place_m, viscosity, i) * (velocity - from.list[i].xyz);
+                dragged += drag_by(place_m, viscosity, i) * (velocity - velocity_of(i));
             }
         }
     }
     vec3 residual = pushed.list[at].xyz - (velocity + dragged);
     vec3 changed = flow.kept * change.list[at].xyz + flow.gained * residual;
     change.list[at] = vec4(changed, 0.0);
-    to.list[at] = vec4(velocity + changed, 0.0);
+    imageStore(to, texel_of(at), vec4(velocity + changed, 0.0));
     if (length(residual) > SMALL * flow.time_step_s * length(flow.gravity_m_s2)) {
         unmet.any[flow.turn] = 1u;
     }

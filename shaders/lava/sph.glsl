@@ -49,8 +49,20 @@ layout(set = 0, binding = 3, std430) readonly buffer Zs {
 // lavapipe ends all loops of a shader after 65,535 iterations: nine stretches of so many particles.
 const uint MOST = 7200u;
 const uint LISTED = 96u; // particles of a list; a lattice at rest has 74 within the farther reach
+const uint ROW_BITS = 12u; // of the textures by cells: every device has so long rows
 const uint WALKS = 0xffffffffu; // in place of a list's length: all of 27 cells are looked at
 const float SIGMA = 3.34225380493; // 21 / (2 pi)
+
+// Of a particle in a texture by cells.
+ivec2 texel_of(uint at) {
+    return ivec2(int(at & ((1u << ROW_BITS) - 1u)), int(at >> ROW_BITS));
+}
+
+// Of four of its list.
+ivec2 four_of(uint at, uint first) {
+    ivec2 texel = texel_of(at);
+    return ivec2(texel.x, texel.y * int(LISTED / 4u) + int(first / 4u));
+}
 
 vec3 began_m(uint at) {
     return vec3(xs.list[at], ys.list[at], zs.list[at]);

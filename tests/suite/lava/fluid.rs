@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
-use fumarole::gpu::{Buffer, Device, Mode, Recorder};
+use fumarole::gpu::{Buffer, Device, ImageView, Mode, Recorder};
 use fumarole::papers::lava::reference::Fluid;
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
@@ -58,11 +58,7 @@ pub(super) fn run(device: &Arc<Device>, animate: &mut Animate, steps: u32) {
 /// Places and velocities of all particles after the last step.
 pub(super) fn state(device: &Arc<Device>, animate: &Animate, count: usize) -> (Vec<DVec3>, Vec<DVec3>) {
     let State { positions, velocities } = animate.state();
-    let of = |view| {
-        let texels: Vec<[f32; 4]> = texels(device, view);
-        texels.iter().take(count).map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect::<Vec<_>>()
-    };
-    (of(positions), of(velocities))
+    (by_cells(device, positions, count), by_cells(device, velocities, count))
 }
 
 pub(super) fn list<T: Pod>(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Vec<T> {
@@ -71,6 +67,12 @@ pub(super) fn list<T: Pod>(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Vec<T>
 
 pub(super) fn vectors(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Vec<DVec3> {
     list::<[f32; 4]>(device, buffer).iter().map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect()
+}
+
+/// Of a texture by cells.
+pub(super) fn by_cells(device: &Arc<Device>, view: &Arc<ImageView>, count: usize) -> Vec<DVec3> {
+    let texels: Vec<[f32; 4]> = texels(device, view);
+    texels.iter().take(count).map(|&[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect()
 }
 
 /// After some steps in which the block falls apart: each pass of the last step against the oracle's equation for it.
@@ -103,7 +105,7 @@ pub(super) fn hold_passes(device: &Arc<Device>, parameters: &Parameters, particl
     let began: Vec<_> = (0..xs.len()).map(|i| Vec3::new(xs[i], ys[i], zs[i]).as_dvec3()).collect();
     // Viscosity: a thousandth of the first guess's residual is left.
     let before = vectors(device, &sph.pushed);
-    let after = vectors(device, &sph.velocities[sph.iterations() % 2]);
+    let after = by_cells(device, &sph.velocities[sph.iterations() % 2], began.len());
     let even = vec![1.0; began.len()];
     let left = |velocities: &[DVec3]| {
         let all = 0..began.len();
@@ -117,8 +119,8 @@ pub(super) fn hold_passes(device: &Arc<Device>, parameters: &Parameters, particl
 
     // Density and constraint at the places before the last correction, and that correction.
     let odd = parameters.flow.corrections as usize % 2;
-    let places = vectors(device, &sph.predicted[1 - odd]);
-    let corrected = vectors(device, &sph.predicted[odd]);
+    let places = by_cells(device, &sph.predicted[1 - odd], began.len());
+    let corrected = by_cells(device, &sph.predicted[odd], began.len());
     let factors: Vec<[f32; 2]> = list(device, &sph.factors);
     let support = oracle.support;
     let expected: Vec<_> = (0..places.len()).map(|i| oracle.constraint(&places, i, 0.7)).collect();

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::lava::reference::{self, Heat as Oracle, cooled_slab, crust_face, light, melt_viscosity, yield_stress};
+use fumarole::papers::lava::reference::{
+    self, Heat as Oracle, cooled_slab, crust_face, light, melt_viscosity, yield_stress,
+};
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
     Bed, Flow, Heat, Parameters, Particles, Rheology, Shading, Sides, SurfaceDraw, SurfaceKind, Variant,
@@ -12,7 +14,7 @@ use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
 use super::bed::{hills, over};
-use super::fluid::{animate, flowing, list, oracle, run, state, vectors};
+use super::fluid::{animate, by_cells, flowing, list, oracle, run, state, vectors};
 use super::scene::{draw, texels, variant_of};
 use super::splatting::low_camera;
 use crate::common::gpu_test;
@@ -108,7 +110,7 @@ fn heat_and_rheology_do_what_their_equations_say() {
             // The rates of strain that the step began with, and the viscosities that follow them.
             let Flow { viscosity_pa_s, heat: rheology, gravity_m_s2, .. } = &parameters.flow;
             let before = vectors(device, &sph.pushed);
-            let after = vectors(device, &sph.velocities[sph.iterations() % 2]);
+            let after = by_cells(device, &sph.velocities[sph.iterations() % 2], before.len());
             let angle = f64::from(parameters.flow.slope_deg(bed.is_level())).to_radians();
             let gained = f64::from(parameters.time_step_s) * f64::from(*gravity_m_s2);
             let gained = gained * DVec3::new(angle.sin(), -angle.cos(), 0.0);

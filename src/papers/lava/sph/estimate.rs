@@ -18,7 +18,6 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
     let iterations =
         chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 5.0;
-    let (listed, longest) = neighbours::bytes(parameters.particles);
     let looked_at_in_all =
         2.0 * particles * looked_at + iterations * neighbours::looked_at(parameters.particles, looked_at);
     let [columns, _, rows] = parameters.density.map(f64::from);
@@ -26,10 +25,10 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let crust = detail * detail * columns * rows;
     Estimate {
         bytes: vec![
-            ("particles", 188.0 * particles + listed + sort::bytes(&cells)),
+            ("particles", 140.0 * particles + neighbours::bytes(parameters.particles) + sort::bytes(&cells)),
             ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
         ],
-        buffers: vec![("particles", longest.max(16.0 * particles))],
+        buffers: vec![("particles", 16.0 * particles)],
         passes: Some(("corrections", iterations as u64 + 24)),
         invocations: vec![("particles", looked_at_in_all), ("density", 2.0 * crust * looked_at)],
         ..Estimate::default()

@@ -23,6 +23,7 @@ pub mod kernel;
 pub mod neighbours;
 pub mod parameters;
 pub mod rock;
+mod scale;
 mod sph_correct;
 mod sph_density;
 mod sph_drag;
@@ -49,6 +50,7 @@ use self::chebyshev::Coefficients;
 use self::heat::Rheology;
 use self::neighbours::Neighbours;
 use self::rock::{Layings, Rock};
+pub use self::scale::Scale;
 use self::sph_correct::sph_correct;
 use self::sph_density::sph_density;
 use self::sph_drag::sph_drag;
@@ -111,11 +113,6 @@ host_block! {
 
 /// Most iterations of a step's viscosity.
 const MOST_ITERATIONS: u32 = 300;
-/// Nearest that a particle comes to a wall, in distances of particles at rest.
-const MARGIN: f64 = 0.25;
-/// Cells beyond one for each particle: 16 MiB of their starts.
-const MORE_CELLS: u32 = 1 << 22;
-
 /// The fluid.
 pub struct Sph {
     /// By cells of the kernel's radius, of the start and of the two states.
@@ -139,13 +136,14 @@ pub struct Sph {
     corrections: u32,
     /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
     /// even in number.
-    pub velocities: [Arc<Buffer>; 2],
+    pub velocities: [Arc<ImageView>; 2],
     /// Velocities that gravity alone leaves, and in the fourth component kelvin as the step begins.
     pub pushed: Arc<Buffer>,
     /// Kelvin as the step ends, and the steepness of a particle's face.
     pub heat: Arc<Buffer>,
     /// Predicted places by cells, metres, likewise by corrections.
-    pub predicted: [Arc<Buffer>; 2],
+    pub predicted: [Arc<ImageView>; 2],
+    arrived: Arc<Buffer>,
     /// Factor of the constraint times h^-2, density over that at rest: before the last correction.
     pub factors: Arc<Buffer>,
     /// The ground: slopes along x and z, heights in metres.
@@ -161,64 +159,6 @@ struct Rheologic {
     /// Rates of strain per second by cells: the tensor's diagonal, and twice what stands beside it.
     strains: [Arc<Buffer>; 2],
     viscosities: Arc<Buffer>,
-}
-
-/// Numbers of the discretization, for `particles` of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
-    /// Distance at rest, metres.
-    pub spacing_m: f64,
-    /// Radius of the kernel, metres.
-    pub support_m: f64,
-    /// Volume of a particle over support^3, so that a lattice has the density 1.
-    pub volume: f64,
-    /// The same, so that a lattice has the Laplacian of a parabola.
-    pub laplacian: f64,
-    /// Step times viscosity over density and support^2.
-    pub stiffness: f64,
-    /// Nearest that a particle comes to a wall, metres.
-    pub margin_m: f64,
-    /// Step times diffusivity of heat over support^2.
-    pub heat_stiffness: f64,
-    /// Of a particle's warmth over its face's, that which goes to a whole face in a step.
-    pub given: f64,
-    /// Heat that a face radiates over that which reaches it from the particle's middle for each kelvin, per K^3.
-    pub radiance: f64,
-    /// Most viscosity over the melt's.
-    pub stiffest: f64,
-}
-
-impl Scale {
-    /// Of these parameters.
-    pub fn of(parameters: &Parameters) -> Self {
-        let flow = &parameters.flow;
-        let spacing_m = flow.spacing_m(parameters.particles);
-        let support_m = kernel::SUPPORT * spacing_m;
-        let (density, laplacian) = kernel::lattice_sums();
-        let volume = (spacing_m / support_m).powi(3);
-        let kinematic = f64::from(flow.viscosity_pa_s) / f64::from(flow.melt_kg_m3);
-        let step_s = f64::from(parameters.time_step_s);
-        let diffusivity_m2_s = flow.heat.diffusivity_m2_s(flow.melt_kg_m3);
-        Scale {
-            spacing_m,
-            support_m,
-            volume: volume / density,
-            laplacian: volume / laplacian,
-            stiffness: step_s * kinematic / (support_m * support_m),
-            margin_m: MARGIN * spacing_m,
-            heat_stiffness: step_s * diffusivity_m2_s / (support_m * support_m),
-            // The face is half a distance away.
-            given: 2.0 * step_s * diffusivity_m2_s / (spacing_m * spacing_m),
-            radiance: flow.heat.radiance(spacing_m),
-            stiffest: flow.heat.stiffest(flow.viscosity_pa_s),
-        }
-    }
-
-    /// Cells of the kernel's radius.
-    pub fn cells(&self, parameters: &Parameters, particles: u32) -> Cells {
-        let most = particles.saturating_add(MORE_CELLS).min(1 << 24);
-        Cells::of_side(parameters.space_m, self.support_m, most, particles)
-    }
 }
 
 impl Sph {
@@ -238,8 +178,10 @@ impl Sph {
             let desc = BufferDesc::new(context.name(name), bytes * u64::from(particle_count)).usage(usage);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
         };
-        let velocities = [buffer("velocities-a", 16)?, buffer("velocities-b", 16)?];
-        let predicted = [buffer("predicted-a", 16)?, buffer("predicted-b", 16)?];
+        let texture = |name: &str| neighbours::texture(context, name, particle_count, 1);
+        let velocities = [texture("velocities-by-cells-a")?, texture("velocities-by-cells-b")?];
+        let predicted = [texture("predicted-a")?, texture("predicted-b")?];
+        let (began, pushing, arrived) = (texture("began")?, texture("pushing")?, buffer("arrived", 16)?);
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
         let wall_drags = buffer("wall-drags", 4)?;
         let unmet = context.upload("unmet", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 3]))?;
@@ -249,14 +191,14 @@ impl Sph {
         let by_particles =
             upload_each(context.device(), &context.name("lasting"), usage, particle_count as usize, |_| [0.0f32; 4])
                 .map_err(|error| error.set_by("particles"))?;
-        let near = Neighbours::new(context, &sort, particle_count, &predicted[0])?;
+        let near = Neighbours::new(context, &sort, particle_count, [&began, &predicted[0]])?;
         let heat = buffer("heat", 8)?;
         let latent = parameters.flow.heat.crystallising_k();
         let latent = context.upload("latent", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&latent))?;
 
         let is_level = bed.is_level();
         let bed = bed.texture(context)?;
-        let ground = Ground { sort: &sort, near: &near, bed: &bed };
+        let ground = Ground { sort: &sort, near: &near, began: &began, bed: &bed };
         let coefficients = chebyshev::coefficients(scale.stiffness * scale.stiffest);
         let rheology = match parameters.flow.heat.rheology {
             Rheology::Constant => None,
@@ -274,21 +216,21 @@ impl Sph {
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
         let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state], &by_particles);
-        let forces = |state| sph_forces(shaders, &sort, state, [&velocities[0], &by_particles, &pressures], viscous);
+        let forces =
+            |state| sph_forces(shaders, &sort, state, [&velocities[0], &began], [&by_particles, &pressures], viscous);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
             sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], viscous, viscosities)
         };
-        let density = |from: usize| sph_density(shaders, ground, &predicted[from], [&factors, &pressures, &unmet]);
-        let correct = |[from, to]: [usize; 2]| {
-            sph_correct(shaders, ground, [&predicted[from], &predicted[to]], [&factors, &unmet])
-        };
+        let density =
+            |from: usize| sph_density(shaders, ground, [&predicted[from], &pushing], [&factors, &pressures, &unmet]);
+        let correct = |to: usize| sph_correct(shaders, ground, [&pushing, &predicted[to]], &unmet);
         let solved = &velocities[coefficients.len() % 2];
         let lasting =
             Lasting { velocities: solved, pushed: &pushed, pressures: &pressures, by_particles: &by_particles };
         let finish = |[from, to]: [usize; 2]| {
-            let arrived = &predicted[corrections as usize % 2];
-            sph_finish(shaders, &sort, [arrived, &heat], lasting, states[to], (&rock, [from, to]))
+            let corrected = &predicted[corrections as usize % 2];
+            sph_finish(shaders, &sort, corrected, [&arrived, &heat], lasting, states[to], (&rock, [from, to]))
         };
         Ok(Sph {
             inflow: [inflow(0)?, inflow(1)?],
@@ -297,9 +239,9 @@ impl Sph {
             drag: sph_drag(shaders, ground, &wall_drags, viscosities)?,
             viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
             rheology,
-            predict: sph_predict(shaders, ground, solved, [&predicted[0], &unmet])?,
+            predict: sph_predict(shaders, ground, [solved, &predicted[0]], &unmet)?,
             density: [density(0)?, density(1)?],
-            correct: [correct([0, 1])?, correct([1, 0])?],
+            correct: [correct(1)?, correct(0)?],
             finish: [finish([0, 1])?, finish([1, 0])?, finish([2, 0])?],
             constants: FlowConstants { width, ..constants(parameters, &scale, &cells, is_level) },
             sort,
@@ -309,6 +251,7 @@ impl Sph {
             pushed,
             heat,
             predicted,
+            arrived,
             factors,
             neighbours: near,
             bed,
@@ -378,7 +321,7 @@ impl Sph {
 
     /// Places of the last step by cells, metres.
     pub fn arrived(&self) -> &Arc<Buffer> {
-        &self.predicted[self.corrections as usize % 2]
+        &self.arrived
     }
 
     /// Mean temperature of the particles that radiate, of the first so many by cells; none where none does.
@@ -406,7 +349,7 @@ impl Sph {
 #[derive(Clone, Copy)]
 struct Lasting<'a> {
     /// After viscosity.
-    velocities: &'a Arc<Buffer>,
+    velocities: &'a Arc<ImageView>,
     /// Before it.
     pushed: &'a Arc<Buffer>,
     /// Sums of the constraint's factors.
@@ -443,6 +386,8 @@ pub(super) fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassB
 struct Ground<'a> {
     sort: &'a Sort,
     near: &'a Neighbours,
+    /// Their places as the step begins.
+    began: &'a Arc<ImageView>,
     bed: &'a Arc<ImageView>,
 }
 
@@ -455,6 +400,11 @@ impl Ground<'_> {
     /// And looks at those near each of them.
     fn over_neighbours(self, name: &'static str, shader: &str) -> PassBuilder {
         self.near.over(name, shader, self.sort).with("bed", self.bed)
+    }
+
+    /// At their places as the step begins.
+    fn over_near_places(self, name: &'static str, shader: &str) -> PassBuilder {
+        self.over_neighbours(name, shader).with("began", self.began)
     }
 }
 

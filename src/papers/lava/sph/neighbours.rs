@@ -4,19 +4,24 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::super::estimate::TEXEL;
 use super::super::gpu_driven::sort::Sort;
-use super::super::targets::Context;
+use super::super::targets::{Context, FLOATS};
 use super::over_cells;
 use super::sph_neighbours::sph_neighbours;
 use super::sph_neighbours_predicted::sph_neighbours_predicted;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
-use crate::gpu::{Buffer, BufferDesc, Device, Error, Pass};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Pass};
 
 /// Particles of a list, as in `lava/sph.glsl`.
 const LISTED: u32 = 96;
-/// Particles with a list: as many lists as every device takes in one buffer. All others look at the cells around them.
-const MOST_LISTS: u32 = (1 << 27) / (4 * LISTED);
+/// Particles in a row of a texture by cells, as there, and rows that every device has.
+const ROW: u32 = 1 << 12;
+/// Texels of a list.
+const FOURS: u32 = LISTED / 4;
+/// Particles with a list: as many lists as every device takes in one texture. All others look at the cells around them.
+const MOST_LISTS: u32 = ROW / FOURS * ROW;
 
 /// The lists, made twice in a step.
 pub struct Neighbours {
@@ -24,10 +29,10 @@ pub struct Neighbours {
     pub began: Pass,
     /// At the predicted ones, with some that only corrections bring near.
     pub predicted: Pass,
-    lists: Arc<Buffer>,
+    lists: Arc<ImageView>,
     counts: Arc<Buffer>,
     /// Drags of the viscosity, of each that is listed.
-    pub drags: Arc<Buffer>,
+    pub drags: Arc<ImageView>,
     crowded: Arc<Buffer>,
 }
 
@@ -36,10 +41,19 @@ pub fn listed(particles: u32) -> u32 {
     particles.min(MOST_LISTS)
 }
 
-/// Bytes of lists and drags for so many particles, and of the largest buffer.
-pub fn bytes(particles: u32) -> (f64, f64) {
-    let lists = 4.0 * f64::from(LISTED) * f64::from(listed(particles));
-    (2.0 * lists + 4.0 * f64::from(particles), lists)
+/// Bytes of so many particles' lists and drags, and of the six textures by cells.
+pub fn bytes(particles: u32) -> f64 {
+    let rows = |particles: u32| TEXEL * f64::from(ROW) * f64::from(particles.div_ceil(ROW));
+    2.0 * f64::from(FOURS) * rows(listed(particles)) + 6.0 * rows(particles) + 4.0 * f64::from(particles)
+}
+
+/// A texture by cells, with so many texels for each particle.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn texture(context: Context<'_>, name: &str, particles: u32, texels: u32) -> Result<Arc<ImageView>, Error> {
+    let desc = ImageDesc::new_2d(context.name(name), FLOATS, ROW, texels * particles.div_ceil(ROW));
+    Image::new(context.device(), desc.usage(vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED))?.view()
 }
 
 /// Particles that a pass looks at, for so many, where each that has no list looks at some.
@@ -49,22 +63,25 @@ pub fn looked_at(particles: u32, walked: f64) -> f64 {
 }
 
 impl Neighbours {
-    /// Of particles in this order, at first and at their predicted places.
+    /// Of particles in this order, at places as the step begins and as they are predicted.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, sort: &Sort, particles: u32, predicted: &Arc<Buffer>) -> Result<Self, Error> {
-        let buffer = |name: &str, words: u64| {
-            let desc = BufferDesc::new(context.name(name), 4 * words).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
-            Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
-        };
-        let words = u64::from(LISTED) * u64::from(listed(particles));
-        let (lists, drags) = (buffer("neighbours", words)?, buffer("drags", words)?);
-        let counts = buffer("neighbour-counts", particles.into())?;
+    pub fn new(
+        context: Context<'_>,
+        sort: &Sort,
+        particles: u32,
+        [began, predicted]: [&Arc<ImageView>; 2],
+    ) -> Result<Self, Error> {
+        let lists = texture(context, "neighbours", listed(particles), FOURS)?;
+        let drags = texture(context, "drags", listed(particles), FOURS)?;
+        let desc = BufferDesc::new(context.name("neighbour-counts"), 4 * u64::from(particles));
+        let counts = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
+            .map_err(|error| error.set_by("particles"))?;
         let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
         Ok(Neighbours {
-            began: sph_neighbours(context.shaders, sort, [&lists, &counts], &crowded)?,
-            predicted: sph_neighbours_predicted(context.shaders, sort, [&lists, &counts], predicted)?,
+            began: sph_neighbours(context.shaders, sort, (&lists, &counts), began, &crowded)?,
+            predicted: sph_neighbours_predicted(context.shaders, sort, (&lists, &counts), predicted)?,
             lists,
             counts,
             drags,

@@ -4,22 +4,21 @@
 use std::sync::Arc;
 
 use super::Ground;
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 
-/// Makes the pass from predicted places to corrected ones.
+/// Makes the pass from places with their factors to corrected ones.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn sph_correct(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
-    [predicted, corrected]: [&Arc<Buffer>; 2],
-    [factors, unmet]: [&Arc<Buffer>; 2],
+    [pushing, corrected]: [&Arc<ImageView>; 2],
+    unmet: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
         .over_neighbours("sph-correct", "lava/sph-correct.comp")
-        .with("predicted", predicted)
-        .with("factors", factors)
+        .with("pushing", pushing)
         .with("corrected", corrected)
         .with("unmet", unmet)
         .build(shaders)

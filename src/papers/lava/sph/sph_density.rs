@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use super::Ground;
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 
-/// Makes the pass; `factors` takes factor and density, `pressures` the sum of the step's factors, and `unmet` tells whether any is too
+/// Makes the pass; `pushing` takes the places with the factors, `factors` takes factor and density, `pressures` the sum of the step's factors, and `unmet` tells whether any is too
 /// dense.
 ///
 /// # Errors
@@ -14,12 +14,13 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 pub fn sph_density(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
-    predicted: &Arc<Buffer>,
+    [predicted, pushing]: [&Arc<ImageView>; 2],
     [factors, pressures, unmet]: [&Arc<Buffer>; 3],
 ) -> Result<Pass, Error> {
     ground
         .over_neighbours("sph-density", "lava/sph-density.comp")
         .with("predicted", predicted)
+        .with("pushing", pushing)
         .with("factors", factors)
         .with("pressures", pressures)
         .with("unmet", unmet)

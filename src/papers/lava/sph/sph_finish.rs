@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::{Lasting, Rock, over_cells};
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
@@ -16,13 +16,15 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 pub fn sph_finish(
     shaders: &ShaderLibrary,
     sort: &Sort,
-    [predicted, heat]: [&Arc<Buffer>; 2],
+    predicted: &Arc<ImageView>,
+    [arrived, heat]: [&Arc<Buffer>; 2],
     lasting: Lasting<'_>,
     state: &State,
     (rock, [from, to]): (&Rock, [usize; 2]),
 ) -> Result<Pass, Error> {
     over_cells("sph-finish", "lava/sph-finish.comp", sort)
         .with("predicted", predicted)
+        .with("arrived", arrived)
         .with("items", &sort.items)
         .with("heat", heat)
         .with("positions", &state.positions)

@@ -4,11 +4,12 @@
 use std::sync::Arc;
 
 use super::{Viscous, over_cells};
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from a state and what is `lasting` of the step before; `pushed`, `velocities` and `pressures` take them, `change` is set to none, and `unmet` says that iterations have begun.
+/// Makes the pass from a state and what is `lasting` of the step before; `pushed`, `velocities` and `pressures` take them,
+/// `began` the places, `change` is set to none, and `unmet` says that iterations have begun.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -16,7 +17,8 @@ pub fn sph_forces(
     shaders: &ShaderLibrary,
     sort: &Sort,
     state: &State,
-    [velocities, lasting, pressures]: [&Arc<Buffer>; 3],
+    [velocities, began]: [&Arc<ImageView>; 2],
+    [lasting, pressures]: [&Arc<Buffer>; 2],
     Viscous { pushed, change, unmet, .. }: Viscous<'_>,
 ) -> Result<Pass, Error> {
     over_cells("sph-forces", "lava/sph-forces.comp", sort)
@@ -25,6 +27,7 @@ pub fn sph_forces(
         .with("pushed", pushed)
         .with("to", velocities)
         .with("change", change)
+        .with("began", began)
         .with("lasting", lasting)
         .with("pressures", pressures)
         .with("unmet", unmet)

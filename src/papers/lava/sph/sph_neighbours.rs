@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::over_cells;
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass; `crowded` takes a 1 where a loop was cut off.
@@ -13,12 +13,14 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 pub fn sph_neighbours(
     shaders: &ShaderLibrary,
     sort: &Sort,
-    [lists, counts]: [&Arc<Buffer>; 2],
+    (lists, counts): (&Arc<ImageView>, &Arc<Buffer>),
+    began: &Arc<ImageView>,
     crowded: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     over_cells("sph-neighbours", "lava/sph-neighbours-began.comp", sort)
         .with("neighbours", lists)
         .with("neighbour_counts", counts)
+        .with("places", began)
         .with("crowded", crowded)
         .build(shaders)
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::over_cells;
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass, whose lists take the place of those before.
@@ -14,12 +14,12 @@ use crate::papers::lava::gpu_driven::sort::Sort;
 pub fn sph_neighbours_predicted(
     shaders: &ShaderLibrary,
     sort: &Sort,
-    [lists, counts]: [&Arc<Buffer>; 2],
-    predicted: &Arc<Buffer>,
+    (lists, counts): (&Arc<ImageView>, &Arc<Buffer>),
+    predicted: &Arc<ImageView>,
 ) -> Result<Pass, Error> {
     over_cells("sph-neighbours-predicted", "lava/sph-neighbours-predicted.comp", sort)
         .with("neighbours", lists)
         .with("neighbour_counts", counts)
-        .with("predicted", predicted)
+        .with("places", predicted)
         .build(shaders)
 }

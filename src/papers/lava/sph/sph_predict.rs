@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Ground;
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 
 /// Makes the pass from the last iterate of the velocities to places in metres; `unmet` says that corrections have begun.
 ///
@@ -12,8 +12,8 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 pub fn sph_predict(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
-    velocities: &Arc<Buffer>,
-    [predicted, unmet]: [&Arc<Buffer>; 2],
+    [velocities, predicted]: [&Arc<ImageView>; 2],
+    unmet: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
         .over_cells("sph-predict", "lava/sph-predict.comp")

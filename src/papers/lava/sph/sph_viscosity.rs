@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Ground, Viscous};
-use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 
 /// Makes the pass from one iterate of the velocities to the next; `viscosities` are those of the particles over the melt's where they
 /// are not all the same.
@@ -13,7 +13,7 @@ use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
 pub fn sph_viscosity(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
-    [from, to]: [&Arc<Buffer>; 2],
+    [from, to]: [&Arc<ImageView>; 2],
     viscous: Viscous<'_>,
     viscosities: Option<&Arc<Buffer>>,
 ) -> Result<Pass, Error> {
@@ -24,6 +24,7 @@ pub fn sph_viscosity(
     let pass = ground
         .near
         .over("sph-viscosity", shader, ground.sort)
+        .with("began", ground.began)
         .with("drags", &ground.near.drags)
         .with("wall_drags", viscous.wall_drags)
         .with("pushed", viscous.pushed)
