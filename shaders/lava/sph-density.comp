@@ -2,8 +2,8 @@
 
 // Eq. 8 to 11 of position-based fluids (Macklin and Mueller 2013): the density at the predicted places over that at rest,
 // walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed. The first
-// of a step's corrections pushes what lies close as much as all of the last step's did, as lava that rests or creeps needs; once none
-// is too dense nothing changes any more.
+// of a step's corrections pushes what lies close half as much as all of the last step's did (Bender and Koschier 2017): nearly as much
+// would push apart once more what one step has, and energy would come from nothing. Once none is too dense nothing changes any more.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -33,7 +33,7 @@ layout(set = 0, binding = 14, std430) buffer Unmet {
 
 const float DENSE = 1.01;
 const float CLOSE = 0.99;
-const float LASTS = 0.95; // of the last step's sum
+const float LASTS = 0.5; // of the last step's sum
 
 // Softens the constraints: eq. 11's epsilon, times h^2. All are corrected at once, and inside lava the gradients' squares are
 // 1.8: with a tenth of it the corrections overshoot and shake the particles by a part of their distance in every step.
