@@ -66,6 +66,13 @@ fn a_bench_times_gpu_and_host_and_says_what_it_did() {
 }
 
 #[test]
+fn a_crust_that_is_too_fine_names_what_is() {
+    let basalt = || small("render").args("--simulation sph --rheology basalt --surface crossing");
+    basalt().args("--space 40x2x40 --skin 20 --pieces 1").run().refused(2, &["--pieces 1", "take a finer --density"]);
+    basalt().args("--skin 0.001 --pieces 1.5").run().refused(2, &["--skin 0.001", "take a finer --density"]);
+}
+
+#[test]
 fn a_density_that_accepts_nothing_is_a_warning_with_the_range() {
     let record = small("bench --json --quiet --rho 1e6").args(ONCE).run().succeeded().json();
     let warnings = record["runs"][0]["warnings"].to_string();

@@ -50,6 +50,10 @@ fn lava_is_clean_with_its_options() {
                 "gpu-driven",
                 "--simulation sph --bed maunga-whau --space 4x2x4 --rheology basalt --effusion-rate 0.02 --surface crossing",
             ),
+            (
+                "gpu-driven",
+                "--simulation sph --rheology basalt --surface crossing --skin 0.5 --pieces 1.5 --jumble 0.5",
+            ),
             ("gpu-driven", "--shading particles"),
             ("paper", "--shading normals"),
         ],
@@ -107,6 +111,7 @@ fn burning_is_clean_with_its_options() {
             ("shell", "--mesh box --texture photo.png --random-rotation --no-keep-connected --active-limit 5"),
             ("melting", "--mesh box --evaporation 0.1 --setting 0.1 --shading normals"),
             ("shell", "--mesh box --object sphere@0.6,0,0,20,0.3 --heat surface --climb 3 --wind=-0.2,0,0.1"),
+            ("shell", "--mesh box --smoke-as volume --bending 10"),
             ("solid", "--mesh box --no-burn-away --heat air --exposure 2 --tone clip --fire-scale 3 --fire-light 4"),
             ("solid", "--mesh box --no-collapse --no-ground --material plain --shading blocks --retire-at 0.4"),
             ("low-poly", "--mesh box --lod 1 --fire 0 --smoke 0 --shading areas"),
@@ -131,6 +136,7 @@ fn terrain_is_clean_with_its_options() {
                 "--map volcano --map volcano --place 0,0,0 --place 5000,0,10 --drape hypsometric",
             ),
             ("mesh-lod", "--mesh-error 4 --shadows"),
+            ("dda-compute,dda-fragment", "--start rays --interpolation bicubic"),
             ("tiled-compute", "--tile-memory 1 --shadows --object teapot"),
         ],
     );

@@ -72,6 +72,7 @@ fn lava_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
         ("gpu-driven", "simulation=sph surface=top object=box"),
         ("paper", "simulation=sph color=blackbody border=0 shading=particles geometry-stage=false"),
         ("gpu-driven", "surface-draw=splats shading=heights"),
+        ("gpu-driven", "simulation=sph rheology=basalt surface=crossing skin=0.02"),
     ] {
         let scene = "size=32x24 particles=500 density=24x8x8 radius=0.2 splats=30x8";
         is_flat::<lava::setup::Setup>(variant, &format!("{scene} {options}"));
@@ -96,6 +97,7 @@ fn burning_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
     for (variant, options) in [
         ("shell", "look=dissertation shading=wire time-division=2 preload=false"),
         ("melting", "evaporation=0.1 shading=normals"),
+        ("shell", "smoke-as=volume fire-light=4"),
         ("solid", "collapse=false ground=false material=plain shading=blocks retire-at=0.4"),
         ("low-poly", "lod=1 fire=0 smoke=0 shading=areas"),
     ] {
@@ -131,6 +133,7 @@ fn terrain_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
         ("gpu-fragment", "base=earth shadows=true drape=slope object=sphere"),
         ("dda-fragment", "base=earth shadows=true drape=slope"),
         ("dda-compute", "shadows=true lod=exact"),
+        ("dda-fragment", "start=rays"),
         ("gpu-compute", "base=cylinder:100000 shadows=true drape=contours"),
         ("mesh-lod", "base=earth drape=contours"),
         ("tiled-compute", "base=earth shadows=true interpolation=bicubic"),

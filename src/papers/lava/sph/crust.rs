@@ -124,17 +124,17 @@ impl Crust {
         )?;
         let range = "must be 0, or 1 to 1.5 distances of particles";
         ParameterError::check(self.pieces == 0.0 || self.pieces >= 1.0, "pieces", self.pieces, range)?;
-        let name = if self.skin_m > 0.0 { "skin" } else { "pieces" };
-        ParameterError::check(
-            self.detail(parameters).is_none_or(|detail| detail <= MOST_DETAIL),
-            name,
-            if self.skin_m > 0.0 { self.skin_m } else { self.pieces },
-            &format!(
-                "is too fine for columns {:.4} metres long, of which the crust has {MOST_DETAIL} times as many at most: take a \
-                 finer `density`",
-                longest_column_m(parameters)
-            ),
-        )
+        let problem = format!(
+            "is too fine for columns {:.4} metres long, of which the crust has {MOST_DETAIL} times as many at most: take a finer \
+             `density`",
+            longest_column_m(parameters)
+        );
+        let ropes = ("skin", self.skin_m, Crust { pieces: 0.0, ..*self });
+        let pieces = ("pieces", self.pieces, Crust { skin_m: 0.0, ..*self });
+        [ropes, pieces].into_iter().try_for_each(|(name, value, alone)| {
+            let is_held = alone.detail(parameters).is_none_or(|detail| detail <= MOST_DETAIL);
+            ParameterError::check(is_held, name, value, &problem)
+        })
     }
 }
 
