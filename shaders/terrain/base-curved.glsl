@@ -116,12 +116,16 @@ Subsegment subsegment_of(RaySegment ray, float start, float size) {
     return Subsegment(map_coordinates(a, side), map_coordinates(b, side), depth_at(ray, start), slack);
 }
 
+// The near end of a ray in the map's coordinates.
+vec3 first_point(RaySegment ray) {
+    return map_coordinates(ray.from, ray.from.x);
+}
+
 // Whether the camera stands in the mountain. 0 where it does not.
-int entry_surface(RaySegment ray, float height) {
-    vec3 eye = map_coordinates(ray.from, ray.from.x);
+int entry_surface(RaySegment ray, vec3 first, float height) {
     vec2 last = vec2(terrain.size - 1);
-    bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= last.x && eye.y <= last.y;
-    return ray.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
+    bool is_over = first.x >= 0.0 && first.y >= 0.0 && first.x <= last.x && first.y <= last.y;
+    return ray.near_m <= 0.0 && is_over && first.z <= height ? INSIDE : 0;
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.

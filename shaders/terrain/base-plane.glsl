@@ -66,9 +66,14 @@ float depth_at(RaySegment ray, float start) {
     return ray.near_m + start * (ray.far_m - ray.near_m);
 }
 
+// The near end of a ray in the map's coordinates.
+vec3 first_point(RaySegment ray) {
+    return ray.from;
+}
+
 // Terrain is solid below its height: a wall where the ray comes in, or the inside of the mountain. 0 where it is neither.
-int entry_surface(RaySegment ray, float height) {
-    return ray.from.z <= height ? ray.side : 0;
+int entry_surface(RaySegment ray, vec3 first, float height) {
+    return first.z <= height ? ray.side : 0;
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.

@@ -107,9 +107,13 @@ const ivec2 REACH = ivec2(0, 1);
 
 // The values at a cell's corners: north-west, north-east, south-west, south-east.
 vec4 values_around(int shift, ivec2 a) {
+#ifdef INTERPOLATION_PACKED
+    return corners_of(shift, a);
+#else
     ivec2 b = min(a + 1, last_texel(shift));
     return vec4(highest_at(shift, a), highest_at(shift, ivec2(b.x, a.y)), highest_at(shift, ivec2(a.x, b.y)),
                 highest_at(shift, b));
+#endif
 }
 
 float surface_height(vec4 values, vec2 uv) {
@@ -139,13 +143,8 @@ float touch(int shift, ivec2 cell, vec3 from, vec3 direction) {
     float numerator = qb < 0.0 ? 2.0 * qc : qb + root;
     float t = numerator / (denominator > 0.0 ? denominator : 1.0);
     bool is_met = discriminant >= 0.0 && denominator > 0.0 && t <= 1.0;
-    if (qc <= 0.0) {
-        t = 0.0;
-    }
-    if (qc > 0.0 && !is_met) {
-        t = qa + qb + qc <= 0.0 ? 1.0 : -1.0;
-    }
-    return t;
+    t = is_met ? t : (qa + qb + qc <= 0.0 ? 1.0 : -1.0);
+    return qc <= 0.0 ? 0.0 : t;
 }
 #endif
 

@@ -54,6 +54,7 @@ struct Map {
     ivec2 last; // column and row
     int top; // levels above the data
     ivec2 spread; // texels between the coarser levels, at the data's size
+    ivec2 beside; // where their corners begin, beside the data's
     bool is_float;
     float pixel; // nodes that one covers at a depth of 1 m
 };
@@ -61,7 +62,8 @@ Map map;
 
 void read_map() {
     ivec2 spread = terrain.level_axis * (1 << terrain.top_level);
-    map = Map(terrain.size - 1, terrain.top_level, spread, terrain.is_float != 0, terrain.pixel_nodes);
+    ivec2 beside = (ivec2(1) - terrain.level_axis) * terrain.size;
+    map = Map(terrain.size - 1, terrain.top_level, spread, beside, terrain.is_float != 0, terrain.pixel_nodes);
 }
 
 // Surfaces that a ray may hit; numbered as src/papers/terrain/hit.rs does.

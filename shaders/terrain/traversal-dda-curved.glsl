@@ -12,11 +12,12 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     if (!(ray.near_m < ray.far_m)) {
         return before;
     }
-    Subsegment subsegment = subsegment_of(ray, 0.0, 0.0);
+    Subsegment subsegment;
+    vec3 first = first_point(ray);
     int shift = finest_shift(ray.near_m);
-    int surface = entry_surface(ray, height_at(shift, subsegment.near.xy));
+    int surface = entry_surface(ray, first, height_at(shift, first.xy));
     if (surface != 0) {
-        return Hit(ray.near_m, subsegment.near.xy, surface_code(surface, shift, 1));
+        return Hit(ray.near_m, first.xy, surface_code(surface, shift, 1));
     }
     Met met = Met(-1.0, true);
     Clip clip = Clip(0.0, 1.0, TERRAIN);
@@ -24,10 +25,10 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     int at = 0;
     int units = first_units(ray, WHOLE);
     bool done = false;
-    while (!done) {
+    while (true) {
         bool is_last = false;
         int level = 0;
-        while (!is_last && !done) {
+        while (true) {
             subsegment = subsegment_of(ray, float(at) / float(WHOLE), float(units) / float(WHOLE));
             vec3 slack = slack_of(subsegment);
             vec2 low = min(subsegment.near.xy, subsegment.far.xy) - slack.xy;
@@ -43,6 +44,9 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             } else {
                 is_last = is_straight(slack, finest_shift(subsegment.depth_m)) || units == 1;
                 units = is_last ? units : units >> 1;
+            }
+            if (is_last || done) {
+                break;
             }
         }
         if (is_last) {
@@ -60,6 +64,9 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
                 units = at & -at;
                 done = at >= WHOLE;
             }
+        }
+        if (done) {
+            break;
         }
     }
     // Not `!done`: compilers know that the loop ends with it.

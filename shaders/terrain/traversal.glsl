@@ -26,16 +26,20 @@ float highest_below(vec2 low, vec2 high, int shift) {
 // The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
 Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     RaySegment ray = ray_segment(eye, direction, limit_m);
-    Subsegment subsegment = subsegment_of(ray, 0.0, 0.0);
+    Subsegment subsegment;
     Hit hit = before;
     bool done = !(ray.near_m < ray.far_m);
     if (!done) {
         int shift = finest_shift(ray.near_m);
-        int surface = entry_surface(ray, height_at(shift, subsegment.near.xy));
+        vec3 first = first_point(ray);
+        int surface = entry_surface(ray, first, height_at(shift, first.xy));
         if (surface != 0) {
-            hit = Hit(ray.near_m, subsegment.near.xy, surface_code(surface, shift, 1));
+            hit = Hit(ray.near_m, first.xy, surface_code(surface, shift, 1));
             done = true;
         }
+    }
+    if (done) {
+        return hit;
     }
     float rounding_nodes = terrain.rounding_nodes;
     float rounding_height = terrain.rounding_height;
@@ -43,10 +47,10 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     int steps = 0;
     int at = 0;
     int units = first_units(ray, WHOLE);
-    bool is_cast = !done;
-    while (!done) {
+    // Ends are asked for after a step: where they are asked for before, processors run one more step for all rays, to no end.
+    while (true) {
         bool is_last = false;
-        while (!is_last && !done) {
+        while (true) {
             subsegment = subsegment_of(ray, float(at) / float(WHOLE), float(units) / float(WHOLE));
             vec3 slack = slack_of(subsegment);
             vec2 low = min(subsegment.near.xy, subsegment.far.xy) - slack.xy;
@@ -64,6 +68,9 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             } else {
                 units >>= 1;
             }
+            if (is_last || done) {
+                break;
+            }
         }
         if (is_last) {
             Clip clip = clip_to_map(subsegment);
@@ -78,9 +85,12 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
                 done = at >= WHOLE;
             }
         }
+        if (done) {
+            break;
+        }
     }
     // Not `!done`: compilers know that the loop ends with it.
-    if (is_cast && t < 0.0 && at < WHOLE) {
+    if (t < 0.0 && at < WHOLE) {
         hit = UNFINISHED;
     }
     if (t >= 0.0) {

@@ -6,16 +6,8 @@
 //
 // Before this file stand one for the base, one for the interpolation and one for where a walk ends.
 
+#include "terrain/cells-between.glsl"
 #include "terrain/crossing.glsl"
-
-// A height above the surface over a block of cells.
-float highest_over(int level, ivec2 block) {
-    float highest = value_above(1, level, block);
-#ifdef INTERPOLATION_BICUBIC
-    highest += 9.0 / 32.0 * (highest - value_above(2, level, block));
-#endif
-    return highest;
-}
 
 // The part of a line over one block, 0 to 1, at which it meets the surface of the level that is seen; -1 where it does not.
 float part_in(int shift, ivec2 cell, vec3 from, vec3 direction) {
@@ -29,18 +21,21 @@ float part_in(int shift, ivec2 cell, vec3 from, vec3 direction) {
 // The cell of a block in which a place lies.
 ivec2 cell_in(ivec2 block, int level, vec2 place, ivec2 last_cell) {
     ivec2 first = block << level;
-    return clamp(ivec2(floor(place)), first, min(first + ((1 << level) - 1), last_cell));
+    // No block begins below 0, so that cut off is as good as rounded down.
+    return clamp(ivec2(place), first, min(first + ((1 << level) - 1), last_cell));
 }
 
-// The cell and the level at which a ray goes on that leaves a block at a place: over the nearer of the two borders ahead, and a
-// level up where that is a border of the level above as well.
-ivec3 beyond(ivec2 block, int level, ivec2 forward, vec2 at_border, vec2 place, ivec2 last_cell) {
-    ivec2 border = (block + forward) << level;
-    ivec2 next = border + forward - 1;
-    ivec2 inside = cell_in(block, level, place, last_cell);
-    bool along_x = at_border.x < at_border.y;
-    int up = (((along_x ? border.x : border.y) >> level) & 1) == 0 ? 1 : 0;
+// The cell and the level at which a ray goes on that leaves a block at a cell of it: over the border that is the nearer one, and a
+// level up where that is a border of the level above as well. `border` is that of the block ahead, in blocks.
+ivec3 beyond(ivec2 border, int level, ivec2 forward, bool along_x, ivec2 inside) {
+    ivec2 next = (border << level) + forward - 1;
+    int up = 1 - ((along_x ? border.x : border.y) & 1);
     return ivec3(along_x ? next.x : inside.x, along_x ? inside.y : next.y, min(level + up, map.top));
+}
+
+// A number below 0 is a large one without its sign.
+bool is_outside(ivec2 cell, ivec2 last_cell) {
+    return any(greaterThan(uvec2(cell), uvec2(last_cell)));
 }
 
 // The depth up to which a ray is known to be above the surface, and the level at which it is followed from there.
@@ -83,54 +78,57 @@ Met walk(Line line, float free, int first_level, inout int steps) {
     ivec2 cell = clamp(ivec2(floor(from.xy + free * whole.xy)), ivec2(0), last_cell);
     int level = first_level;
     float t = free; // of the ray
-    float end = 0.0; // of the block
     float met = -1.0;
     bool done = false;
-    while (!done) {
-        bool is_last = false;
-        while (!is_last && !done) {
-            ivec2 block = cell >> level;
-            vec2 at_border = (vec2((block + forward) << level) - from.xy) * inverse + never;
-            end = max(min(min(at_border.x, at_border.y), 1.0), t);
-            steps += 1;
-            is_last = level == 0;
+    // Ends are asked for after a step: where they are asked for before, processors run one more step for all rays, to no end.
+    while (true) {
+        bool is_last = level == 0;
+        while (true) {
             if (!is_last) {
-                float lowest = from.z + whole.z * (falls ? end : t) - margin;
+                ivec2 block = cell >> level;
+                ivec2 border = block + forward;
+                vec2 at_border = (vec2(border << level) - from.xy) * inverse + never;
+                float end = max(min(min(at_border.x, at_border.y), 1.0), t);
                 float highest = highest_over(level, block);
-                if (lowest > highest) {
-                    t = end;
-                    ivec3 next = beyond(block, level, forward, at_border, from.xy + t * whole.xy, last_cell);
-                    cell = next.xy;
-                    level = next.z;
-                    done = t >= 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThan(cell, last_cell));
-                } else {
-                    float jump = falls ? min((highest + margin - from.z) / whole.z, end) : t;
-                    if (jump > t) {
-                        t = jump;
-                        cell = cell_in(block, level, from.xy + t * whole.xy, last_cell);
-                    }
-                    is_last = level <= finest_shift(line.near_m + t * (line.far_m - line.near_m));
-                    level -= is_last ? 0 : 1;
-                }
+                bool is_free = from.z + whole.z * (falls ? end : t) - margin > highest;
+                float down = falls ? max(t, min((highest + margin - from.z) / whole.z, end)) : t;
+                t = is_free ? end : down;
+                cell = cell_in(block, level, from.xy + t * whole.xy, last_cell);
+                ivec3 next = beyond(border, level, forward, at_border.x < at_border.y, cell);
+                bool is_finest = level <= finest_shift(line.near_m + t * (line.far_m - line.near_m));
+                is_last = !is_free && (is_finest || level == 1);
+                cell = is_free ? next.xy : cell;
+                level = is_free ? next.z : level - (is_finest ? 0 : 1);
+                steps += 1;
+                done = is_free && (t >= 1.0 || is_outside(cell, last_cell));
+            }
+            if (is_last || done) {
+                break;
             }
         }
         if (is_last) {
+            ivec2 block = cell >> level;
+            ivec2 border = block + forward;
+            vec2 at_border = (vec2(border << level) - from.xy) * inverse + never;
+            float end = max(min(min(at_border.x, at_border.y), 1.0), t);
             int finest = finest_shift(line.near_m + t * (line.far_m - line.near_m));
             float part = part_in(max(finest, level), cell, from + t * whole, (end - t) * whole);
+            steps += level == 0 ? 1 : 0;
             done = part >= 0.0;
             met = done ? t + part * (end - t) : -1.0;
             if (!done) {
-                ivec2 block = cell >> level;
-                vec2 at_border = (vec2((block + forward) << level) - from.xy) * inverse + never;
                 t = end;
-                ivec3 next = beyond(block, level, forward, at_border, from.xy + t * whole.xy, last_cell);
+                ivec2 inside = cell_in(block, level, from.xy + t * whole.xy, last_cell);
+                ivec3 next = beyond(border, level, forward, at_border.x < at_border.y, inside);
                 cell = next.xy;
                 level = next.z;
-                done = t >= 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThan(cell, last_cell));
+                done = t >= 1.0 || is_outside(cell, last_cell);
             }
+        }
+        if (done) {
+            break;
         }
     }
     // Not `!done`: compilers know that the loop ends with it.
-    bool is_over = all(greaterThanEqual(cell, ivec2(0))) && all(lessThanEqual(cell, last_cell));
-    return Met(met, met >= 0.0 || t >= 1.0 || !is_over);
+    return Met(met, met >= 0.0 || t >= 1.0 || is_outside(cell, last_cell));
 }

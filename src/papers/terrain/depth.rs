@@ -13,46 +13,34 @@ use super::scene::DeviceScene;
 use super::stage::{Build, PixelPass, VECTOR};
 use super::start::Starts;
 use crate::gpu::{Error, Frame, ImageView, PassInfo};
-use crate::measure::Target;
 use crate::measure::parameter::Choice;
 
 /// The pass on the device: section 4's second application.
-pub struct DeviceDepth {
-    starts: Starts,
-    pass: PixelPass,
-}
+pub struct DeviceDepth(PixelPass);
 
 impl DeviceDepth {
+    /// Rays begin at `starts`.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(build: &Build<'_>, scene: &DeviceScene) -> Result<Self, Error> {
-        let starts = Starts::new(build, scene)?;
+    pub fn new(build: &Build<'_>, scene: &DeviceScene, starts: &Starts) -> Result<Self, Error> {
         let program = format!("{}-{}", build.ray_program("depth"), build.parameters.lod.name());
         let first = build.image("depth", VECTOR)?;
         let second = if scene.maps.len() > 1 { build.image("depth", VECTOR)? } else { first.clone() };
         let start = |map| starts.of_map(map).map(|start| ("starts", start.into())).into_iter().collect();
         let prior = scene.no_hits.clone();
-        let pass = build.map_passes(("depth", "3"), &program, [&first, &second], scene, prior, &start)?;
-        Ok(DeviceDepth { starts, pass })
+        build.map_passes(("depth", "3"), &program, [&first, &second], scene, prior, &start).map(DeviceDepth)
     }
 
     /// A [`Hit`] of each pixel, of all maps.
     pub fn target(&self) -> &Arc<ImageView> {
-        &self.pass.target
+        &self.0.target
     }
 
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.starts.passes.iter().try_for_each(|pass| pass.record(frame))?;
-        self.pass.record(frame)
-    }
-
-    /// Images beside the hits.
-    pub fn targets(&self) -> Option<Target> {
-        let start = self.starts.passes.first()?;
-        let what = "depth in metres up to which no ray of a tile of 8 x 8 pixels has met the first map";
-        Some(Target::image("start", &start.target).of(what))
+        self.0.record(frame)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Sizes that follow from the parameters, the maps and the objects.
 
 use super::mesh::{BLOCK_INDICES, MESH_SIDE};
+use super::packed::{is_packed, packed_bytes};
 use super::page_table::{PageTable, TILE};
 use super::parameters::{Base, Interpolation, Lod, Parameters, Start, Variant};
 use super::pyramid::Shape;
@@ -8,6 +9,7 @@ use super::quadtree::PATCH_SIDE;
 use super::scene::Inputs;
 use super::selection::Patch;
 use super::start::TILE_PIXELS;
+use crate::gpu::Device;
 use crate::measure::estimate::Estimate;
 use crate::scene::Samples;
 
@@ -19,7 +21,13 @@ const STEP: f64 = 4.0;
 
 impl Parameters {
     /// Device memory, passes and shader invocations of a frame; `map` names the parameter that sets the maps' sizes.
-    pub(super) fn estimate(&self, variant: Variant, inputs: &Inputs<'_>, map: &'static str) -> Estimate {
+    pub(super) fn estimate(
+        &self,
+        device: &Device,
+        variant: Variant,
+        inputs: &Inputs<'_>,
+        map: &'static str,
+    ) -> Estimate {
         let pixels = self.pixels() as f64;
         let is_host = variant.is_host();
         let is_mesh = variant.is_rasterised();
@@ -28,6 +36,8 @@ impl Parameters {
             Interpolation::Bilinear => 1.0,
             Interpolation::Bicubic => 2.0,
         };
+        let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
+        let is_packed = walks && is_packed(device, self, inputs.maps.iter().map(|input| &*input.map));
         let (mut levels, mut pools, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for input in inputs.maps {
             let samples = &input.map;
@@ -42,7 +52,7 @@ impl Parameters {
                 // Of the pool, and the one that is on its way to it.
                 pools += (f64::from(columns) * f64::from(rows) + 1.0) * tile;
             } else {
-                levels += whole;
+                levels += whole + if is_packed { packed_bytes(samples) as f64 } else { 0.0 };
             }
             let side = f64::from(shape.width.max(shape.height));
             // Level by level, or cell by cell.
@@ -72,7 +82,6 @@ impl Parameters {
         let drape = inputs.drape.map_or(0.0, |drape| f64::from(drape.size().0) * f64::from(drape.size().1));
         let of_pixel = if is_host { 3.0 * VECTOR + 2.0 * NUMBER } else { (1.0 + targets) * VECTOR + NUMBER };
         let of_pixel = of_pixel + if is_mesh { NUMBER } else { 0.0 };
-        let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
         let starts = if walks && self.base == Base::Plane && self.start == Start::Tiles {
             maps * NUMBER / f64::from(TILE_PIXELS * TILE_PIXELS)
         } else {

@@ -5,9 +5,14 @@ use crate::papers::layout::check_block;
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for program in
-        ["depth-plane-bilinear-pixel", "depth-curved-bicubic-exact", "shadow-curved-bilinear", "normal-bicubic"]
-    {
+    for program in [
+        "depth-plane-bilinear-pixel",
+        "depth-curved-bicubic-exact",
+        "shadow-curved-bilinear",
+        "normal-bicubic",
+        "depth-dda-plane-packed-exact",
+        "start-packed",
+    ] {
         for stage in ["comp", "frag"] {
             check_block::<TerrainBlock>(&format!("terrain/{program}.{stage}"), "terrain");
         }

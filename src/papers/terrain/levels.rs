@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::packed::Packed;
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Cover, Shape};
 use super::tile_file::TileFile;
@@ -41,6 +42,8 @@ pub struct Levels {
     pub is_float: bool,
     /// The tiles, where the device does not hold all.
     pub tiles: Option<Tiles>,
+    /// Images that rays read in place of the layers, where they were made.
+    pub packed: Option<Packed>,
 }
 
 impl Levels {
@@ -75,7 +78,7 @@ impl Levels {
                 Samples::Float(values) => copy_samples(&values[first..], rows),
             }
         })?;
-        let levels = Levels { view: image.view()?, shape, is_float, tiles: None };
+        let levels = Levels { view: image.view()?, shape, is_float, tiles: None, packed: None };
         for (layer, &bound) in (1..).zip(bounds) {
             levels.build(shaders, &image, layer, (bound, cover))?;
         }
@@ -96,10 +99,35 @@ impl Levels {
         let tiles = Tiles::new(device, label, map, pool, file)?;
         let is_float = matches!(map.samples(), Samples::Float(_));
         let shape = Shape::new(map.width(), map.height());
-        Ok(Levels { view: tiles.view.clone(), shape, is_float, tiles: Some(tiles) })
+        Ok(Levels { view: tiles.view.clone(), shape, is_float, tiles: Some(tiles), packed: None })
     }
 
-    /// All that passes read of them, by the shaders' names.
+    /// Makes the images that rays read in place of the layers.
+    ///
+    /// # Errors
+    /// As [`Packed::new`].
+    pub fn pack(mut self, shaders: &ShaderLibrary, label: &str) -> Result<Self, Error> {
+        self.packed = Some(Packed::new(shaders, label, &self)?);
+        Ok(self)
+    }
+
+    /// All that rays read of them, by the shaders' names.
+    pub fn ray_resources(&self) -> Vec<(&'static str, Resource)> {
+        match &self.packed {
+            None => self.resources(),
+            Some(packed) => vec![("corners", (&packed.corners).into()), ("coarser", (&packed.coarser).into())],
+        }
+    }
+
+    /// The bounds of blocks of cells, by the names of the shaders.
+    pub fn bounds(&self) -> Vec<(&'static str, Resource)> {
+        match &self.packed {
+            None => self.resources(),
+            Some(packed) => vec![("coarser", (&packed.coarser).into())],
+        }
+    }
+
+    /// All that the other passes read of them, by the shaders' names.
     pub fn resources(&self) -> Vec<(&'static str, Resource)> {
         match &self.tiles {
             None => vec![("levels", (&self.view).into())],

@@ -40,6 +40,7 @@ mod object_shadow;
 mod object_source;
 mod objects;
 mod occlusion;
+mod packed;
 mod page_table;
 mod parameters;
 mod placement;
@@ -86,7 +87,7 @@ use self::normal::{HostNormal, normal};
 use self::object_passes::ObjectPasses;
 pub use self::object_source::{ObjectSource, Stand};
 use self::occlusion::{HostOcclusion, occlusion};
-pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Start, Sun, Variant, View};
+pub use self::parameters::{Base, Corners, Interpolation, Lod, Normals, Parameters, Start, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
 pub use self::quadtree::{Bounds, PATCH_SIDE, PatchLevel, Quadtree};
@@ -96,14 +97,16 @@ pub use self::selection::{Patch, Selection, Viewer};
 use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
 use self::stage::{Build, PixelPass, Stage, Traversal};
+use self::start::Starts;
 pub use self::tile_file::TileFile;
 pub use self::tiles::TileCounts;
 use self::tiles::Tiles;
+pub use self::voids::void_warnings;
 use crate::gpu::transfer::read_image;
 use crate::gpu::{Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
-use crate::scene::{Camera, HeightMap, Suspect};
+use crate::scene::Camera;
 
 /// The features that this paper needs of a device, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
@@ -120,12 +123,13 @@ pub struct Terrain {
     device_scene: Option<DeviceScene>,
     technique: Technique,
     objects: Option<ObjectPasses>,
+    corners: Option<Corners>,
 }
 
 /// The passes that make the picture of the terrain.
 enum Technique {
     Cpu(HostPasses),
-    RayCast(DeviceDepth, Shading),
+    RayCast(Starts, DeviceDepth, Shading),
     Mesh(BasePass, Triangles, Shading),
 }
 
@@ -187,10 +191,12 @@ impl Terrain {
                 (Stage::Fragment, Traversal::Halving)
             }
         };
-        let build = Build { shaders, label, parameters, stage, traversal };
         let scene = Scene::new(parameters, inputs);
         scene.check_tiles(label, variant)?;
-        let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene, (drape, traversal));
+        let is_packed =
+            traversal == Traversal::Cells && packed::is_packed(shaders.device(), parameters, scene.height_maps());
+        let build = Build { shaders, label, parameters, stage, traversal, is_packed };
+        let on_device = |drape| DeviceScene::new(&build, &scene, drape);
         let casts = parameters.shadows && !inputs.objects.is_empty();
         let tree = casts.then(|| TriangleTree::over(inputs.objects));
         let device_tree = tree.as_ref().map(|tree| DeviceTree::new(shaders.device(), label, tree)).transpose()?;
@@ -205,9 +211,10 @@ impl Terrain {
             | Variant::DdaFragment
             | Variant::TiledCompute => {
                 let maps = on_device(inputs.drape)?;
-                let depth = DeviceDepth::new(&build, &maps)?;
+                let starts = Starts::new(&build, &maps)?;
+                let depth = DeviceDepth::new(&build, &maps, &starts)?;
                 let shading = Shading::new(&build, &maps, depth.target(), device_tree.as_ref())?;
-                (Some(maps), Technique::RayCast(depth, shading))
+                (Some(maps), Technique::RayCast(starts, depth, shading))
             }
             Variant::Mesh | Variant::MeshLod => {
                 let maps = on_device(inputs.drape)?;
@@ -227,6 +234,11 @@ impl Terrain {
             device_scene,
             technique,
             objects: None,
+            corners: matches!(variant, Variant::DdaCompute | Variant::DdaFragment).then_some(if is_packed {
+                Corners::Packed
+            } else {
+                Corners::Image
+            }),
         };
         if !inputs.objects.is_empty() {
             let casters = terrain.device_scene.as_ref().zip(device_tree.as_ref());
@@ -257,7 +269,7 @@ impl Terrain {
     fn depth(&self) -> &Arc<ImageView> {
         match &self.technique {
             Technique::Cpu(host) => &host.show.depth,
-            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.depth,
+            Technique::RayCast(_, _, shading) | Technique::Mesh(_, _, shading) => &shading.depth,
         }
     }
 
@@ -267,6 +279,11 @@ impl Terrain {
             Technique::Mesh(_, Triangles::Selected(mesh), _) => Some(mesh.by_level()),
             _ => None,
         }
+    }
+
+    /// The images that rays read of a cell; of [`Variant::DdaCompute`] and [`Variant::DdaFragment`].
+    pub fn corners(&self) -> Option<Corners> {
+        self.corners
     }
 
     /// The tiles of all maps; of [`Variant::TiledCompute`].
@@ -313,7 +330,8 @@ impl Terrain {
                     host.show.record(frame, (hits, normals, colors))?;
                 }
             }
-            Technique::RayCast(depth, shading) => {
+            Technique::RayCast(starts, depth, shading) => {
+                starts.record(frame)?;
                 depth.record(frame)?;
                 shading.record(frame)?;
             }
@@ -328,21 +346,6 @@ impl Terrain {
         }
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame, &view))
     }
-}
-
-/// Lines on the samples that maps leave void, and on heights that look like voids.
-pub fn void_warnings<'a>(maps: impl ExactSizeIterator<Item = &'a HeightMap>) -> Vec<String> {
-    let of = maps.len();
-    let warnings = maps.zip(1..).flat_map(|(map, number): (&HeightMap, usize)| {
-        let suspect = map.suspect().map(|Suspect { height_m, samples, next_m }| {
-            format!(
-                "{samples} samples are {height_m} m, the next is {next_m} m: they look like voids that the file does not \
-                 declare; declare them, as by gdal_translate -a_nodata {height_m}"
-            )
-        });
-        map.void_note().into_iter().chain(suspect).map(move |note| format!("`map` {number} of {of}: {note}"))
-    });
-    warnings.collect()
 }
 
 impl HostPasses {
@@ -425,7 +428,7 @@ impl Paper for Terrain {
             |texel: &[f32]| texel[0] > 1.0,
         );
         let mut counts = Vec::new();
-        if let Technique::RayCast(depth, shading) = &self.technique {
+        if let Technique::RayCast(_, depth, shading) = &self.technique {
             counts.push(("depth", unfinished(depth.target(), &is_hit, 4)?));
             if let Some(shadow) = &shading.shadow {
                 counts.push(("shadow", unfinished(&shadow.target, &is_light, 1)?));
@@ -462,8 +465,12 @@ impl Paper for Terrain {
         let count = self.scene.grounds.len();
         let winding =
             (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));
-        let voids = void_warnings(self.scene.maps.iter().map(|map| &**map));
-        voids.into_iter().chain(winding).chain(haze).chain(lacking).collect()
+        let voids = void_warnings(self.scene.height_maps());
+        let wants_packed =
+            self.parameters.corners == Corners::Auto && self.parameters.interpolation == Interpolation::Bilinear;
+        let unpacked =
+            (wants_packed && self.corners == Some(Corners::Image)).then(|| packed::no_room(self.scene.height_maps()));
+        voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(unpacked).collect()
     }
 
     fn camera(&self) -> Option<Camera> {
@@ -473,14 +480,14 @@ impl Paper for Terrain {
     fn picture(&self) -> &Arc<ImageView> {
         match &self.technique {
             Technique::Cpu(host) => &host.show.picture,
-            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.illumination.target,
+            Technique::RayCast(_, _, shading) | Technique::Mesh(_, _, shading) => &shading.illumination.target,
         }
     }
 
     fn targets(&self) -> Vec<Target> {
         let mut targets = match &self.technique {
             Technique::Cpu(host) => host.show.targets(),
-            Technique::RayCast(depth, shading) => depth.targets().into_iter().chain(shading.targets()).collect(),
+            Technique::RayCast(starts, _, shading) => starts.target().into_iter().chain(shading.targets()).collect(),
             Technique::Mesh(_, _, shading) => shading.targets(),
         };
         targets.extend(self.objects.iter().flat_map(ObjectPasses::targets));

@@ -49,10 +49,25 @@ impl Shape {
 
     /// Columns and rows that the data and the layer of coarser levels need.
     pub fn extent(self) -> (u32, u32) {
-        (1..=self.top).fold((self.width, self.height), |(width, height), shift| {
+        let (width, height) = self.coarser_extent();
+        (width.max(self.width), height.max(self.height))
+    }
+
+    /// Columns and rows that the layer of coarser levels needs.
+    pub fn coarser_extent(self) -> (u32, u32) {
+        (1..=self.top).fold((1, 1), |(width, height), shift| {
             let ((x, y), (columns, rows)) = (self.origin(shift), self.level(shift));
             (width.max(x + columns), height.max(y + rows))
         })
+    }
+
+    /// Columns and rows of an image that has the data and, beside them, the coarser levels: below where those lie along the rows.
+    pub fn corners_extent(self) -> (u32, u32) {
+        let (width, height) = self.coarser_extent();
+        match self.axis() {
+            (1, _) => (width.max(self.width), self.height + height),
+            _ => (self.width + width, height.max(self.height)),
+        }
     }
 }
 
@@ -252,6 +267,22 @@ mod tests {
             }
         }
         assert_eq!(Shape::new(16_384, 16_384).extent(), (16_384, 16_384));
+    }
+
+    #[test]
+    fn corners_of_coarser_levels_lie_beside_those_of_the_data() {
+        for (width, height) in [(2, 1), (1, 9), (5, 3), (17, 200), (200, 200), (257, 256), (1024, 1024)] {
+            let shape = Shape::new(width, height);
+            let ((columns, rows), (x, y)) = (shape.corners_extent(), shape.axis());
+            let beside = (y * width, x * height);
+            for shift in 1..=shape.top {
+                let (origin, level) = (shape.origin(shift), shape.level(shift));
+                let first = (beside.0 + origin.0, beside.1 + origin.1);
+                assert!(first.0 >= width || first.1 >= height, "{width} x {height}: level {shift} over the data");
+                assert!(first.0 + level.0 <= columns && first.1 + level.1 <= rows, "{width} x {height}: level {shift}");
+            }
+        }
+        assert_eq!(Shape::new(1024, 1024).corners_extent(), (1024, 1536));
     }
 
     #[test]

@@ -14,10 +14,10 @@ use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters, Variant};
 use super::placement::{Extent, Placement, Rays};
 use super::pyramid::Bound;
-use super::stage::Traversal;
+use super::stage::{Build, Traversal};
 use super::tile_file::TileFile;
 use crate::gpu::transfer::upload_rows;
-use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location};
 use crate::measure::Variant as _;
 use crate::scene::{HeightMap, Mesh, Samples};
 
@@ -109,6 +109,11 @@ impl Scene {
         Err(Error::Filling { object: format!("{label}/maps"), reason })
     }
 
+    /// The maps as passes read them.
+    pub fn height_maps(&self) -> impl ExactSizeIterator<Item = &HeightMap> + Clone {
+        self.maps.iter().map(|map| &**map)
+    }
+
     /// Every map as `rays` see it.
     pub fn terrain_blocks<'a>(
         &'a self,
@@ -152,11 +157,9 @@ impl DeviceScene {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
+        &Build { shaders, label, parameters, traversal, is_packed, .. }: &Build<'_>,
         Scene { maps, tiles, .. }: &Scene,
-        (drape, traversal): (Option<&Drape>, Traversal),
+        drape: Option<&Drape>,
     ) -> Result<Self, Error> {
         let cover = traversal.cover(parameters.interpolation);
         let bounds: &[Bound] = match parameters.interpolation {
@@ -170,7 +173,10 @@ impl DeviceScene {
             Ok(Map {
                 levels: match traversal {
                     Traversal::Tiles => Levels::in_tiles(device, &name, map, pool, tiles.get(index))?,
-                    Traversal::Halving | Traversal::Cells => Levels::new(shaders, &name, map, bounds, cover)?,
+                    Traversal::Halving | Traversal::Cells => {
+                        let levels = Levels::new(shaders, &name, map, bounds, cover)?;
+                        if is_packed { levels.pack(shaders, &name)? } else { levels }
+                    }
                 },
                 terrain: block_buffer::<TerrainBlock>(device, &format!("{name}/land"))?,
             })

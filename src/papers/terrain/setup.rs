@@ -16,7 +16,7 @@ use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
+use crate::measure::parameter::{self, Choice, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
 use crate::measure::stress::{Axis, host_memory};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
@@ -248,10 +248,10 @@ impl Study for Setup {
         Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
     }
 
-    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+    fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
         let inputs = scene.inputs();
         let map = if self.maps.contains(&HeightMapSource::Volcano) { "resolution" } else { "map" };
-        self.parameters.estimate(variant, &inputs, map)
+        self.parameters.estimate(device, variant, &inputs, map)
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
@@ -316,6 +316,7 @@ impl Study for Setup {
                 ("hit_share", json!(census.hit_fraction())),
                 ("patches", json!(built.paper.patches().map(|patches| patches.iter().sum::<u64>()))),
                 ("levels", json!(levels)),
+                ("corners", json!(built.paper.corners().map(Choice::name))),
                 ("tiles", json!(built.paper.tiles().map(tile_results))),
             ]);
             metrics.push(Metrics { results, warnings: built.paper.warnings() });

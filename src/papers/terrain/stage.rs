@@ -65,6 +65,8 @@ pub struct Build<'a> {
     pub stage: Stage,
     /// Of all rays.
     pub traversal: Traversal,
+    /// Rays read a cell's corners by one fetch.
+    pub is_packed: bool,
 }
 
 impl Build<'_> {
@@ -75,12 +77,17 @@ impl Build<'_> {
 
     /// The name of the program of `pass` that casts rays, before what it is made of beside base and interpolation.
     pub fn ray_program(&self, pass: &str) -> String {
-        let Parameters { base, interpolation, .. } = self.parameters;
+        let (base, surface) = (self.parameters.base.kind(), self.surface());
         match self.traversal {
-            Traversal::Halving => format!("{pass}-{}-{}", base.kind(), interpolation.name()),
-            Traversal::Cells => format!("{pass}-dda-{}-{}", base.kind(), interpolation.name()),
-            Traversal::Tiles => format!("{pass}-tiled-{}-{}", base.kind(), interpolation.name()),
+            Traversal::Halving => format!("{pass}-{base}-{surface}"),
+            Traversal::Cells => format!("{pass}-dda-{base}-{surface}"),
+            Traversal::Tiles => format!("{pass}-tiled-{base}-{surface}"),
         }
+    }
+
+    /// The surface between the samples as the shaders of rays call it.
+    pub fn surface(&self) -> &'static str {
+        if self.is_packed { "packed" } else { self.parameters.interpolation.name() }
     }
 
     fn image_of(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<ImageView>, Error> {
@@ -153,7 +160,7 @@ impl Build<'_> {
         let mut passes = Vec::new();
         for ((index, map), target) in scene.maps.iter().enumerate().zip(ping_pong.into_iter().cycle()) {
             let own = [("terrain", (&map.terrain).into()), ("prior", (&prior).into())];
-            let resources = [&own[..], &map.levels.resources(), &others(index)].concat();
+            let resources = [&own[..], &map.levels.ray_resources(), &others(index)].concat();
             passes.push(self.pass(name, program, (target, Load::Discard), &resources)?);
             prior = target.clone();
         }

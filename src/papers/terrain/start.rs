@@ -8,8 +8,8 @@ use ash::vk;
 use super::parameters::{Base, Start};
 use super::scene::{DeviceScene, Map, texels};
 use super::stage::{Build, PixelPass, Traversal};
-use crate::gpu::{Error, Image, ImageDesc, ImageView, Load};
-use crate::measure::parameter::Choice;
+use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Load};
+use crate::measure::Target;
 
 /// Pixels a side of a tile; `shaders/terrain/tile-pixels.glsl` has it, too.
 pub const TILE_PIXELS: u32 = 8;
@@ -20,7 +20,7 @@ const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 /// Beginnings of the rays of each map.
 pub struct Starts {
     /// Of each map in their order; none where each ray begins at its own beginning.
-    pub passes: Vec<PixelPass>,
+    passes: Vec<PixelPass>,
     /// A single texel of 0 metres, where shaders read one all the same.
     nothing: Option<Arc<ImageView>>,
 }
@@ -38,15 +38,28 @@ impl Starts {
             let nothing = texels(build.shaders.device(), &name, FORMAT, (1, 1), |_, bytes| bytes.fill(0))?;
             return Ok(Starts { passes: Vec::new(), nothing: Some(nothing) });
         }
-        let program = format!("start-{}", parameters.interpolation.name());
+        let program = format!("start-{}", build.surface());
         let of_map = |(index, map): (usize, &Map)| {
             let target = tiles(build, index)?;
             let own = [("terrain", (&map.terrain).into())];
-            let resources = [&own[..], &map.levels.resources()].concat();
+            let resources = [&own[..], &map.levels.bounds()].concat();
             let pass = build.pass(("start", "3"), &program, (&target, Load::Discard), &resources)?;
             Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
         };
         Ok(Starts { passes: scene.maps.iter().enumerate().map(of_map).collect::<Result<_, Error>>()?, nothing: None })
+    }
+
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.passes.iter().try_for_each(|pass| pass.record(frame))
+    }
+
+    /// Of the first map.
+    pub fn target(&self) -> Option<Target> {
+        let start = self.passes.first()?;
+        let what = "depth in metres up to which no ray of a tile of 8 x 8 pixels has met the first map";
+        Some(Target::image("start", &start.target).of(what))
     }
 
     /// The image that rays at a map begin with; none where no shader reads one.

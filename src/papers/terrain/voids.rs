@@ -1,11 +1,11 @@
-//! The option `voids`.
+//! The option `voids`, and what is said of voids.
 
 use std::ffi::OsStr;
 
 use serde_json::{Value as Json, json};
 
 use crate::measure::parameter::{Shape, Value, one, parse_finite};
-use crate::scene::Voids;
+use crate::scene::{HeightMap, Suspect, Voids};
 
 impl Value for Voids {
     const SHAPE: Shape = Shape::single("fill|level:M|hole");
@@ -35,4 +35,19 @@ impl Value for Voids {
             Voids::Level(level_m) => json!({"level": level_m}),
         }
     }
+}
+
+/// Lines on the samples that maps leave void, and on heights that look like voids.
+pub fn void_warnings<'a>(maps: impl ExactSizeIterator<Item = &'a HeightMap>) -> Vec<String> {
+    let of = maps.len();
+    let warnings = maps.zip(1..).flat_map(|(map, number): (&HeightMap, usize)| {
+        let suspect = map.suspect().map(|Suspect { height_m, samples, next_m }| {
+            format!(
+                "{samples} samples are {height_m} m, the next is {next_m} m: they look like voids that the file does not \
+                 declare; declare them, as by gdal_translate -a_nodata {height_m}"
+            )
+        });
+        map.void_note().into_iter().chain(suspect).map(move |note| format!("`map` {number} of {of}: {note}"))
+    });
+    warnings.collect()
 }

@@ -271,8 +271,12 @@ fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
             let passes = variant["passes"].as_array().unwrap();
             let depth = passes.iter().find(|pass| pass["name"] == "depth").unwrap();
             assert_eq!(depth["kind"], kind);
-            let shader = format!("depth-dda-{kind_of_base}-bilinear-pixel");
+            let shader = format!("depth-dda-{kind_of_base}-packed-pixel");
             assert!(depth["shaders"].to_string().contains(&shader), "{depth}");
+        }
+        for options in ["--corners image", "--corners auto --interpolation bicubic"] {
+            let listed = small(list).args(&format!("--base {base} {options}")).run().succeeded().json();
+            assert!(!listed.to_string().contains("packed"), "{options}: {listed}");
         }
     }
     let benched = small("bench --json --quiet --resolution 64").args(ONCE).run().succeeded().json();

@@ -1,6 +1,7 @@
 //! The paper `terrain` on the device: variant against variant, adversarial maps, extreme cameras, pictures.
 
 mod collisions;
+mod corners;
 mod drawing;
 mod far;
 mod footprint;
