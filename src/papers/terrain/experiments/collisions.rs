@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
+use super::decimals::Decimals;
 use crate::measure::Error;
 use crate::measure::ParameterError;
 use crate::measure::experiment::json_text;
@@ -162,14 +163,15 @@ impl std::fmt::Display for Collision {
             let rounded = |c: f64| (c * 1e6).round() / 1e6;
             v.to_array().map(|c| if rounded(c).abs() < half { 0.0 } else { rounded(c) })
         };
-        let [x, y, z] = rounded(m.point, 0.5e-3);
-        write!(formatter, " at {x:.3},{y:.3},{z:.3}, ")?;
-        match m.t {
-            Some(t) => write!(formatter, "parameter {t:.6}, {:.3} m from its start", m.distance_m),
-            None => write!(formatter, "{:.6} m from its centre", m.distance_m),
+        let [x, y, z] = rounded(m.point, 0.5e-3).map(Decimals::<3>);
+        write!(formatter, " at {x},{y},{z}, ")?;
+        let distance_m = m.distance_m;
+        match m.t.map(Decimals::<6>) {
+            Some(t) => write!(formatter, "parameter {t}, {} m from its start", Decimals::<3>(distance_m)),
+            None => write!(formatter, "{} m from its centre", Decimals::<6>(distance_m)),
         }?;
-        let [x, y, z] = rounded(m.normal, 0.5e-6);
-        writeln!(formatter, ", normal {x:.6},{y:.6},{z:.6}, {} steps", m.steps)
+        let [x, y, z] = rounded(m.normal, 0.5e-6).map(Decimals::<6>);
+        writeln!(formatter, ", normal {x},{y},{z}, {} steps", m.steps)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod bodies;
 pub mod collisions;
+mod decimals;
 pub mod figures;
 mod flight;
 pub mod table;
