@@ -5,7 +5,9 @@
 // not be up to date when the driver ends it.
 //
 // It asks at its end where it can: lavapipe does what follows a condition also where no thread holds it, `if` or loop, so that a
-// loop that asks first goes through its body once more than any thread wants, and through all loops in it.
+// loop that asks first goes through its body once more than any thread wants, and through all loops in it. There it also computes
+// on for threads that have left a loop: what one that asks at its end leaves behind is set under an `if` in it, or follows from
+// numbers without memory being read, or a thread would have what it reads as none.
 
 bool is_cut = false; // a loop of this thread was ended before its end
 

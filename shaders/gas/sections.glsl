@@ -86,14 +86,16 @@ void main() {
         float next = end;
         bool is_found = false;
         do {
-            uvec4 link = fragment != NONE ? links[fragment] : uvec4(NONE);
-            float cut = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
-            is_found = fragment != NONE && cut > depth;
-            if (is_found) {
-                next = min(next, cut);
-            } else if (fragment != NONE) {
-                previous = fragment;
-                fragment = link.x;
+            if (fragment != NONE) {
+                uvec4 link = links[fragment];
+                float cut = 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
+                is_found = cut > depth;
+                if (is_found) {
+                    next = min(next, cut);
+                } else {
+                    previous = fragment;
+                    fragment = link.x;
+                }
             }
         } while (fragment != NONE && !is_found);
         bool has_gas = false;

@@ -224,41 +224,39 @@ void main() {
     bool is_moved = false;
     bool has_equal = false; // depths in a run, of which the triangles are not asked here
     Run run = NO_RUN;
-    do {
-        if (next != NONE) {
-            run = NO_RUN;
-            uint count = 0u;
-            float farthest_m = 0.0;
-            do {
-                uvec4 link = links[next];
-                float depth = mean_depth_of(link);
-                has_equal = has_equal || has_depth(run, depth);
-                is_moved = is_moved || depth < farthest_m;
-                farthest_m = max(farthest_m, depth);
-                insert(run, depth, next, link.y);
-                next = link.x;
-                count++;
-            } while (next != NONE && count < MOST_OF_RUN);
-            bool is_all = runs == 0u && next == NONE && !has_equal;
-            float end_m = NOWHERE_M;
-            do {
-                uint node = run.nodes[0].x;
-                head = last == NONE ? node : head;
-                if (is_moved && last != NONE) {
-                    links[last].x = node;
-                }
-                if (is_all && covered != 0xffffffffu) {
-                    covered |= opacity_of(Color(0u, colors[node].y)) >= 1.0 ? run.masks[0].x : 0u;
-                    end_m = run.depths[0].x;
-                }
-                last = node;
-                turn(run);
-                count--;
-            } while (count > 0u);
-            end = is_all && covered == 0xffffffffu ? min(end, end_m) : end;
-            runs++;
+    while (next != NONE && runs < MOST_RUNS) {
+        run = NO_RUN;
+        uint count = 0u;
+        float farthest_m = 0.0;
+        while (next != NONE && count < MOST_OF_RUN) {
+            uvec4 link = links[next];
+            float depth = mean_depth_of(link);
+            has_equal = has_equal || has_depth(run, depth);
+            is_moved = is_moved || depth < farthest_m;
+            farthest_m = max(farthest_m, depth);
+            insert(run, depth, next, link.y);
+            next = link.x;
+            count++;
         }
-    } while (next != NONE && runs < MOST_RUNS);
+        bool is_all = runs == 0u && next == NONE && !has_equal;
+        float end_m = NOWHERE_M;
+        while (count > 0u) {
+            uint node = run.nodes[0].x;
+            head = last == NONE ? node : head;
+            if (is_moved && last != NONE) {
+                links[last].x = node;
+            }
+            if (is_all && covered != 0xffffffffu) {
+                covered |= opacity_of(Color(0u, colors[node].y)) >= 1.0 ? run.masks[0].x : 0u;
+                end_m = run.depths[0].x;
+            }
+            last = node;
+            turn(run);
+            count--;
+        }
+        end = is_all && covered == 0xffffffffu ? min(end, end_m) : end;
+        runs++;
+    }
     if (is_moved) {
         links[last].x = next;
         heads[at] = head;
