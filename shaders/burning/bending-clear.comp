@@ -16,6 +16,11 @@ layout(set = 0, binding = 108, std430) buffer Strengths {
     uint strengths[]; // of joints
 };
 
+layout(set = 0, binding = 112, std430) buffer Bending {
+    uint groups[3];
+    uint is_idle;
+};
+
 layout(push_constant, std430) uniform Sizes {
     uint section_count;
     uint joint_count;
@@ -27,6 +32,9 @@ layout(push_constant, std430) uniform Sizes {
 
 void main() {
     uint thread = element(64u);
+    if (thread == 0u) {
+        is_idle = 0u;
+    }
     if (thread < sizes.section_count) {
         loads[thread] = Load(0u, NONE, 0u);
     }

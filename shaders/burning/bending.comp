@@ -51,6 +51,7 @@ layout(set = 0, binding = 111, std430) buffer Hinges {
 
 layout(set = 0, binding = 112, std430) buffer Bending {
     uint groups[3]; // workgroups over the vertices, in rows, while something bends; else 0 a row
+    uint is_idle; // 1 where nothing has turned since the loads were summed, nor will before they are again
 };
 
 layout(push_constant, std430) uniform Sizes {
@@ -111,6 +112,9 @@ vec3 pivot_of(uint section, uint joint) {
 }
 
 void main() {
+    if (is_idle != 0u) {
+        return;
+    }
     uint thread = gl_LocalInvocationID.x;
     uint count = min(sizes.section_count, MOST_SECTIONS);
     for (uint section = thread; section < count; section += GROUP) {
@@ -210,6 +214,7 @@ void main() {
     }
     barrier();
     if (thread == 0u) {
+        is_idle = 1u - turning_count;
         uint row = 64u * groups[1];
         groups[0] = turning_count * ((constants.vertex_count + row - 1u) / row);
     }

@@ -137,7 +137,7 @@ impl Bending {
         let [row, ..] = shaders.device().physical().limits.max_compute_work_group_count;
         let rows = model.vertex_count().div_ceil(GROUP).div_ceil(row).max(1);
         let usage = storage | vk::BufferUsageFlags::INDIRECT_BUFFER;
-        let still = [0, rows, 1];
+        let still = [0, rows, 1, 0];
         let moving = bytemuck::cast_slice::<u32, u8>(&still);
         let moving = upload(shaders.device(), &format!("{label}/bending"), usage, moving)?;
         for buffer in [&loads, &strengths, &bends, &angles, &moving] {
@@ -147,7 +147,7 @@ impl Bending {
             Pass::compute("bending", "", &format!("burning/bending{name}.comp")).with("constants", &buffers.constants)
         };
         let clear = step("-clear").constants::<Sizes>().with("Loads", &loads).with("Strengths", &strengths);
-        let clear = ping_pong::build(shaders, clear, &[])?;
+        let clear = ping_pong::build(shaders, clear.with("Bending", &moving), &[])?;
         let sum = step("-loads")
             .constants::<Sizes>()
             .with("Flammabilities", &buffers.flammabilities)
