@@ -76,7 +76,7 @@ pub fn ropy() -> Parameters {
         splat_radius_m: 0.01,
         rock_tile_m: 0.25,
         gloss: 0.3,
-        ..basalt(Vec3::new(1.5, 0.45, 1.0), Vec3::new(0.8, 0.06, 0.36), 6.0, flow)
+        ..basalt(Vec3::new(1.42, 0.38, 0.76), Vec3::new(0.84, 0.05, 0.34), 6.0, flow)
     }
 }
 
