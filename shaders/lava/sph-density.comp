@@ -1,9 +1,9 @@
 #version 450
 
 // Eq. 8 to 11 of position-based fluids (Macklin and Mueller 2013): the density at the predicted places over that at rest,
-// walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed. The first
-// of a step's corrections pushes what lies close half as much as all of the last step's did (Bender and Koschier 2017): nearly as much
-// would push apart once more what one step has, and energy would come from nothing. Once none is too dense nothing changes any more.
+// walls included, and the factor of its constraint. Lava that is pulled apart is let go: only what is too dense is pushed. Once
+// none is too dense nothing changes any more. No step begins with what the last one pushed (Bender and Koschier 2017): what that has
+// pushed apart would be pushed apart once more, and energy would come from nothing.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -21,10 +21,6 @@ layout(set = 0, binding = 5, std430) buffer Factors {
     vec2 list[]; // lambda times h^-2, and the density over that at rest
 } factors;
 
-layout(set = 0, binding = 6, std430) buffer Pressures {
-    float list[]; // sum of the factors: before the first correction that of the last step
-} pressures;
-
 layout(set = 0, binding = 7, rgba32f) uniform image2D pushing; // metres, and the factor
 
 layout(set = 0, binding = 14, std430) buffer Unmet {
@@ -32,8 +28,6 @@ layout(set = 0, binding = 14, std430) buffer Unmet {
 } unmet;
 
 const float DENSE = 1.01;
-const float CLOSE = 0.99;
-const float LASTS = 0.5; // of the last step's sum
 
 // Softens the constraints: eq. 11's epsilon, times h^2. All are corrected at once, and inside lava the gradients' squares are
 // 1.8: with a tenth of it the corrections overshoot and shake the particles by a part of their distance in every step.
@@ -74,9 +68,6 @@ void main() {
     float density = flow.volume * sum + wall_share(walls);
     own += wall_gradient(walls);
     float push = max(density - 1.0, 0.0) / (dot(own, own) + others + SOFTNESS);
-    float sum_before = -pressures.list[at];
-    push = max(push, density > CLOSE ? flow.kept * LASTS * sum_before : 0.0);
-    pressures.list[at] = -push - (1.0 - flow.kept) * sum_before;
     factors.list[at] = vec2(-push, density);
     imageStore(pushing, texel_of(at), vec4(place_m, -push));
     if (density > DENSE) {

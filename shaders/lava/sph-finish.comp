@@ -2,7 +2,7 @@
 
 // The step's end: velocities from the places, both into the textures at the particles' numbers, with
 // temperatures. The way that a particle has gone since the rock was laid on it is added up, for each of two
-// layings that are renewed in turn, as they are stretched ever more (Neyret 2003). What viscosity and pressure did goes to the next
+// layings that are renewed in turn, as they are stretched ever more (Neyret 2003). What viscosity did goes to the next
 // step, which begins with it.
 
 #extension GL_EXT_samplerless_texture_functions : require
@@ -40,16 +40,12 @@ layout(set = 0, binding = 14, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second: its right side
 } pushed;
 
-layout(set = 0, binding = 15, std430) readonly buffer Pressures {
-    float list[]; // sum of the constraint's factors
-} pressures;
-
 layout(set = 0, binding = 17, std430) buffer Arrived {
     vec4 list[]; // metres, by cells
 } arrived;
 
 layout(set = 0, binding = 16, std430) buffer Lasting {
-    vec4 list[]; // by particles: metres per second that viscosity changed, and that sum
+    vec4 list[]; // by particles: metres per second that viscosity changed
 } lasting;
 
 void main() {
@@ -68,7 +64,7 @@ void main() {
     vec4 carried_m = kept.xxyy * texelFetch(carried_before, texel, 0) + way_m.xyxy;
     carried.list[at] = carried_m;
     imageStore(carried_after, texel, carried_m);
-    lasting.list[particle] = vec4(texelFetch(from, texel_of(at), 0).xyz - pushed.list[at].xyz, pressures.list[at]);
+    lasting.list[particle] = vec4(texelFetch(from, texel_of(at), 0).xyz - pushed.list[at].xyz, 0.0);
     imageStore(positions, texel, vec4(within, 0.0));
     imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, heat.list[at].x));
 }

@@ -1,7 +1,7 @@
 #version 450
 
-// Velocities after gravity alone, in the order of the cells: what viscosity takes. Its first guess, and that of pressure, are that
-// either does as much as in the step before. Temperatures come with them.
+// Velocities after gravity alone, in the order of the cells: what viscosity takes. Its first guess is that
+// it does as much as in the step before. Temperatures come with them.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -27,12 +27,8 @@ layout(set = 0, binding = 8, std430) buffer Change {
 } change;
 
 layout(set = 0, binding = 9, std430) readonly buffer Lasting {
-    vec4 list[]; // by particles: metres per second that viscosity changed, and the sum of the constraint's factors
+    vec4 list[]; // by particles: metres per second that viscosity changed
 } lasting;
-
-layout(set = 0, binding = 11, std430) buffer Pressures {
-    float list[]; // that sum by cells
-} pressures;
 
 layout(set = 0, binding = 15, rgba32f) uniform image2D began; // metres
 
@@ -54,9 +50,8 @@ void main() {
     vec4 before = texelFetch(velocities, texel, 0);
     vec4 after = before + vec4(flow.time_step_s * flow.gravity_m_s2, 0.0);
     pushed.list[at] = after;
-    vec4 last = flow.kept * lasting.list[particle];
-    imageStore(to, texel_of(at), vec4(after.xyz + last.xyz, 0.0));
+    vec3 changed = flow.kept * lasting.list[particle].xyz;
+    imageStore(to, texel_of(at), vec4(after.xyz + changed, 0.0));
     imageStore(began, texel_of(at), vec4(began_m(at), 0.0));
-    pressures.list[at] = last.w;
     change.list[at] = vec4(0.0);
 }

@@ -25,7 +25,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let crust = detail * detail * columns * rows;
     Estimate {
         bytes: vec![
-            ("particles", 140.0 * particles + neighbours::bytes(parameters.particles) + sort::bytes(&cells)),
+            ("particles", 136.0 * particles + neighbours::bytes(parameters.particles) + sort::bytes(&cells)),
             ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
         ],
         buffers: vec![("particles", 16.0 * particles)],

@@ -186,7 +186,6 @@ impl Sph {
         let wall_drags = buffer("wall-drags", 4)?;
         let unmet = context.upload("unmet", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 3]))?;
         let viscous = Viscous { pushed: &pushed, change: &change, wall_drags: &wall_drags, unmet: &unmet };
-        let pressures = buffer("pressures", 4)?;
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let by_particles =
             upload_each(context.device(), &context.name("lasting"), usage, particle_count as usize, |_| [0.0f32; 4])
@@ -216,18 +215,15 @@ impl Sph {
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
         let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state], &by_particles);
-        let forces =
-            |state| sph_forces(shaders, &sort, state, [&velocities[0], &began], [&by_particles, &pressures], viscous);
+        let forces = |state| sph_forces(shaders, &sort, state, [&velocities[0], &began], &by_particles, viscous);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
             sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], viscous, viscosities)
         };
-        let density =
-            |from: usize| sph_density(shaders, ground, [&predicted[from], &pushing], [&factors, &pressures, &unmet]);
+        let density = |from: usize| sph_density(shaders, ground, [&predicted[from], &pushing], [&factors, &unmet]);
         let correct = |to: usize| sph_correct(shaders, ground, [&pushing, &predicted[to]], &unmet);
         let solved = &velocities[coefficients.len() % 2];
-        let lasting =
-            Lasting { velocities: solved, pushed: &pushed, pressures: &pressures, by_particles: &by_particles };
+        let lasting = Lasting { velocities: solved, pushed: &pushed, by_particles: &by_particles };
         let finish = |[from, to]: [usize; 2]| {
             let corrected = &predicted[corrections as usize % 2];
             sph_finish(shaders, &sort, corrected, [&arrived, &heat], lasting, states[to], (&rock, [from, to]))
@@ -295,8 +291,7 @@ impl Sph {
         run(frame, &self.predict, &constants)?;
         run(frame, &self.neighbours.predicted, &constants)?;
         for at in 0..self.corrections as usize {
-            let kept = f32::from(u8::from(at == 0));
-            let constants = FlowConstants { kept, turn: at as u32 % 3, ..constants };
+            let constants = FlowConstants { turn: at as u32 % 3, ..constants };
             run(frame, &self.density[at % 2], &constants)?;
             run(frame, &self.correct[at % 2], &constants)?;
         }
@@ -352,9 +347,7 @@ struct Lasting<'a> {
     velocities: &'a Arc<ImageView>,
     /// Before it.
     pushed: &'a Arc<Buffer>,
-    /// Sums of the constraint's factors.
-    pressures: &'a Arc<Buffer>,
-    /// Both for the next step, by the particles' numbers.
+    /// The difference for the next step, by the particles' numbers.
     by_particles: &'a Arc<Buffer>,
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::Ground;
 use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 
-/// Makes the pass; `pushing` takes the places with the factors, `factors` takes factor and density, `pressures` the sum of the step's factors, and `unmet` tells whether any is too
+/// Makes the pass; `pushing` takes the places with the factors, `factors` takes factor and density, and `unmet` tells whether any is too
 /// dense.
 ///
 /// # Errors
@@ -15,14 +15,13 @@ pub fn sph_density(
     shaders: &ShaderLibrary,
     ground: Ground<'_>,
     [predicted, pushing]: [&Arc<ImageView>; 2],
-    [factors, pressures, unmet]: [&Arc<Buffer>; 3],
+    [factors, unmet]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
     ground
         .over_neighbours("sph-density", "lava/sph-density.comp")
         .with("predicted", predicted)
         .with("pushing", pushing)
         .with("factors", factors)
-        .with("pressures", pressures)
         .with("unmet", unmet)
         .build(shaders)
 }

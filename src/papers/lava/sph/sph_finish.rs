@@ -34,7 +34,6 @@ pub fn sph_finish(
         .with("carried", &rock.by_cells)
         .with("from", lasting.velocities)
         .with("pushed", lasting.pushed)
-        .with("pressures", lasting.pressures)
         .with("lasting", lasting.by_particles)
         .build(shaders)
 }

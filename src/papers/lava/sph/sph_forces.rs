@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass from a state and what is `lasting` of the step before; `pushed`, `velocities` and `pressures` take them,
+/// Makes the pass from a state and what is `lasting` of the step before; `pushed` and `velocities` take the velocities,
 /// `began` the places, `change` is set to none, and `unmet` says that iterations have begun.
 ///
 /// # Errors
@@ -18,7 +18,7 @@ pub fn sph_forces(
     sort: &Sort,
     state: &State,
     [velocities, began]: [&Arc<ImageView>; 2],
-    [lasting, pressures]: [&Arc<Buffer>; 2],
+    lasting: &Arc<Buffer>,
     Viscous { pushed, change, unmet, .. }: Viscous<'_>,
 ) -> Result<Pass, Error> {
     over_cells("sph-forces", "lava/sph-forces.comp", sort)
@@ -29,7 +29,6 @@ pub fn sph_forces(
         .with("change", change)
         .with("began", began)
         .with("lasting", lasting)
-        .with("pressures", pressures)
         .with("unmet", unmet)
         .build(shaders)
 }
