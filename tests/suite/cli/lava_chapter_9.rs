@@ -91,6 +91,23 @@ fn a_fluid_is_followed_over_many_steps() {
         .refused(2, &["--sides periodic"]);
 }
 
+/// Every law at every frame, for more than a minute of lava that falls, spreads and comes to rest; it takes about as long.
+#[test]
+fn four_thousand_particles_hold_their_laws_for_two_thousand_frames() {
+    let out = folder();
+    let experiment = lava("experiment stability --simulation sph --particles 4000 --frames 2000 --quiet --out .");
+    experiment.on_test_device().inside(out.path()).run().succeeded();
+    let table = read_json(&out.path().join("lava-stability.json"));
+    let rows = table["table"]["rows"].as_array().unwrap();
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    assert_eq!(number(last, "frame"), 1999.0, "{table}");
+    for row in rows {
+        assert_eq!(number(row, "mass kg"), number(first, "mass kg"), "{row}");
+        assert!(number(row, "greatest compression %") < 20.0, "{row}");
+    }
+    assert!(number(last, "mean speed m/s") < 0.1 && number(last, "front m") > 3.9, "{last}");
+}
+
 #[test]
 fn pixels_have_planck_s_chromaticities() {
     let rows = rows("radiance", "");
