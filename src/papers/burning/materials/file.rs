@@ -55,7 +55,8 @@ type Wrong = (Option<usize>, String);
 /// A file that cannot be read, is no such TOML, or names what the mesh has not: with the file and its line.
 pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
     let cannot = |reason: String| Error::Input(format!("cannot use the materials {}: {reason}", path.display()));
-    let text = file::read_text(path, MOST_BYTES).map_err(|error| cannot(error.to_string()))?;
+    let text = file::read_text(path, MOST_BYTES);
+    let text = text.map_err(|error| cannot(format!("{error}; name a TOML file that can be read")))?;
     let parsed = parse(&text).and_then(|document| {
         let Some(texture) = &document.texture else {
             return assigned(&document.material, mesh, &mesh.tags.colors, text.as_bytes());
