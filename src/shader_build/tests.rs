@@ -110,7 +110,8 @@ fn naga_refuses_what_it_would_miscompile() {
         let reason = compile_fragment(declarations, body).naga.unwrap_err();
         assert!(reason.contains(expected), "{reason}");
     }
-    let asked_last = "int i = 0;\ndo {\n i++;\n} while (i < 3);\nfor (; i < 9; i++) {\n continue;\n}\ntarget = vec4(i);";
+    let asked_last =
+        "int i = 0;\ndo {\n i++;\n} while (i < 3);\nfor (; i < 9; i++) {\n continue;\n}\ntarget = vec4(i);";
     assert!(compile_fragment("", asked_last).naga.is_ok());
 }
 

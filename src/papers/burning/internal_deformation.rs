@@ -138,12 +138,7 @@ impl InternalDeformation {
 }
 
 /// A sweep of the folding from the newest state into a third one, and one back, for each ping-pong index of the tick.
-fn sweeps(
-    shaders: &ShaderLibrary,
-    label: &str,
-    buffers: &Buffers,
-    model: &Model,
-) -> Result<[[Pass; 2]; 2], Error> {
+fn sweeps(shaders: &ShaderLibrary, label: &str, buffers: &Buffers, model: &Model) -> Result<[[Pass; 2]; 2], Error> {
     let bytes = size_of::<VertexState>() as u64 * u64::from(model.vertex_count());
     let desc = BufferDesc::new(format!("{label}/setting"), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
     let between = Buffer::new(shaders.device(), desc)?;

@@ -284,7 +284,11 @@ impl Study for Setup {
             kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
                 Setup::crusted(kinds::pahoehoe())
             }),
-            kind("ropy", "Section 3.2: pahoehoe under a stiff skin, halted by a wall", || Setup::crusted(kinds::ropy())),
+            kind(
+                "ropy",
+                "Section 3.2: pahoehoe under a stiff skin, halted by a wall",
+                || Setup::crusted(kinds::ropy()),
+            ),
             kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
                 bed: Some(HeightMapSource::Jacksboro),
                 ..Setup::crusted(kinds::toes())

@@ -163,7 +163,10 @@ fn the_crust_is_what_its_equations_say() {
                 coldest = coldest
                     .max((kelvin - columns.heat[at % width * 40 / width + at / width * 24 / rows * 40][0]).abs());
             }
-            println!("{crust:?}: {compared} of {}, {left_out} left out, {highest} m, {coldest} K", width * rows / stride);
+            println!(
+                "{crust:?}: {compared} of {}, {left_out} left out, {highest} m, {coldest} K",
+                width * rows / stride
+            );
             assert!(compared > 300 && left_out * 10 < width * rows / stride && highest > 0.01, "{compared} {left_out}");
         }
     });
