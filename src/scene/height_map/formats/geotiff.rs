@@ -32,6 +32,8 @@ pub(super) struct Picture<R: Read + Seek> {
     pub(super) no_data: Option<f64>,
     /// Spacing and coordinates, as far as the file has them.
     pub(super) placement: Placement,
+    /// Of its file.
+    pub(super) size_bytes: u64,
 }
 
 impl<R: Read + Seek> Picture<R> {
@@ -57,7 +59,7 @@ impl<R: Read + Seek> Picture<R> {
             Some((coordinates, unit)) => coordinates.in_parts(width, height).placed(unit),
             None => Placement::Unknown,
         };
-        Ok(Picture { decoder, bits, width, height, no_data, placement })
+        Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes })
     }
 }
 
@@ -92,7 +94,8 @@ fn find_overview(decoder: &mut Decoder<impl Read + Seek>, overview: u32) -> Resu
 
 /// Reads the first picture, or an overview, in strips or tiles.
 pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> Result<HeightMap, Fault> {
-    let Picture { mut decoder, bits, width, height, no_data, placement } = Picture::open(size_bytes, input, overview)?;
+    let Picture { mut decoder, bits, width, height, no_data, placement, .. } =
+        Picture::open(size_bytes, input, overview)?;
     let source = Source { width, height, no_data, placement };
     let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
     if raw_bytes > MAX_BYTES as u64 {

@@ -30,12 +30,14 @@ impl GeoTiffRows {
     /// Looks at all samples of a TIFF or of an overview of it; none of another file and of one with voids, or with a row of tiles or
     /// a strip beyond what is ever read at once.
     pub(in crate::scene::height_map) fn survey(path: &Path, overview: u32) -> Result<Option<Self>, Error> {
-        let Some((mut picture, size_bytes)) = open(path, overview)? else { return Ok(None) };
+        let Some(mut picture) = open(path, overview)? else { return Ok(None) };
         let size = (picture.width, picture.height);
         let (_, chunk_rows) = picture.decoder.chunk_dimensions();
         let band_bytes = u64::from(size.0) * u64::from(chunk_rows.min(size.1)) * size_of::<f64>() as u64;
         // Nor one that could be far larger than its file is.
-        if band_bytes > spare_bytes(size_bytes).min(MAX_BYTES as u64) || !matches!(picture.bits, 8 | 16 | 32 | 64) {
+        if band_bytes > spare_bytes(picture.size_bytes).min(MAX_BYTES as u64)
+            || !matches!(picture.bits, 8 | 16 | 32 | 64)
+        {
             return Ok(None);
         }
         let (no_data, placement) = (picture.no_data, picture.placement);
@@ -84,7 +86,7 @@ impl GeoTiffRows {
             let reason = format!("{} was changed while it was read; start again", self.path.display());
             Error::HeightMap { reason }
         };
-        let (mut picture, _) = open(&self.path, self.overview)?.ok_or_else(changed)?;
+        let mut picture = open(&self.path, self.overview)?.ok_or_else(changed)?;
         if (picture.width, picture.height) != self.size {
             return Err(changed());
         }
@@ -109,11 +111,9 @@ impl GeoTiffRows {
     }
 }
 
-/// The picture, and the bytes of its file.
-fn open(path: &Path, overview: u32) -> Result<Option<(Picture<BufReader<File>>, u64)>, Error> {
+fn open(path: &Path, overview: u32) -> Result<Option<Picture<BufReader<File>>>, Error> {
     let Some((file, size_bytes)) = open_tiff(path)? else { return Ok(None) };
-    let picture = Picture::open(size_bytes, BufReader::new(file), overview);
-    picture.map(|picture| Some((picture, size_bytes))).map_err(|fault| malformed(path, fault))
+    Picture::open(size_bytes, BufReader::new(file), overview).map(Some).map_err(|fault| malformed(path, fault))
 }
 
 /// Hands whole rows to `take`, as many as a tile or a strip has, while it says true; true where all are whole numbers by their kind.
