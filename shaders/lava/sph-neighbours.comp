@@ -28,7 +28,7 @@ layout(set = 0, binding = 5, std430) buffer Crowded {
 
 const float REACH = 1.0; // in radii of the kernel
 #else
-const float REACH = 1.0833;
+const float REACH = 1.1;
 #endif
 
 // The last of four that are there come first.

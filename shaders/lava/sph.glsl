@@ -48,7 +48,7 @@ layout(set = 0, binding = 3, std430) readonly buffer Zs {
 
 // lavapipe ends all loops of a shader after 65,535 iterations: nine stretches of so many particles.
 const uint MOST = 7200u;
-const uint LISTED = 96u; // particles of a list; a lattice at rest has 74 within the farther reach
+const uint LISTED = 96u; // particles of a list; a lattice at rest has 77 within the farther reach
 const uint ROW_BITS = 12u; // of the textures by cells: every device has so long rows
 const uint WALKS = 0xffffffffu; // in place of a list's length: all of 27 cells are looked at
 const float SIGMA = 3.34225380493; // 21 / (2 pi)

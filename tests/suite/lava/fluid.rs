@@ -83,7 +83,12 @@ fn every_pass_does_what_its_equation_says() {
         let periodic = Parameters {
             space_m: Vec3::new(0.75, 1.0, 0.7),
             // So few that something is too dense before the last.
-            flow: Flow { sides: Sides::Periodic, block_m: Vec3::new(0.75, 0.3, 0.6), corrections: 2, ..Flow::default() },
+            flow: Flow {
+                sides: Sides::Periodic,
+                block_m: Vec3::new(0.75, 0.3, 0.6),
+                corrections: 2,
+                ..Flow::default()
+            },
             ..flowing()
         };
         let stiff = Parameters {
