@@ -229,8 +229,8 @@ impl Comparison<'_> {
         match self.fire.paper.refinement() {
             None => {
                 let mut expected = tick.stream(state);
-                // By the natural look in the order of vertex caches.
-                if self.fire.paper.made_of().1.look == Look::Natural {
+                let (variant, parameters) = self.fire.paper.made_of();
+                if parameters.orders_triangles(variant, false) {
                     stream.sort_unstable();
                     expected.sort_unstable();
                 }
