@@ -100,7 +100,7 @@ fn words(dump: &[u8]) -> Vec<u32> {
 }
 
 /// A spider whose legs bend and come off, in two processes on each driver. Positions and what is left to burn are the same on
-/// both; sines and roots differ in their last bits, and so does what bends.
+/// both; sines and cosines differ in their last bits, and so does what bends.
 #[test]
 fn what_bends_and_falls_is_the_same_to_the_bit_on_every_run() {
     let folder = folder();
