@@ -58,8 +58,9 @@ fn nor_does_one_of_solids_wax_and_refined_objects() {
         check(device, Variant::Melting, &quick(), &ball(), [40, 63, 90]);
         let levels = Parameters { levels: Some(3), ..quick() };
         check(device, Variant::LowPoly, &levels, &shapes::cuboid(), [40, 80, 120]);
+        // A picture in the middle of a tick has the colours of the radius then, if none was made at the tick's end.
         let divided = Parameters { time_division: 3, ..levels };
-        check(device, Variant::FullySubdivided, &divided, &shapes::cuboid(), [121, 240, 361]);
+        check(device, Variant::FullySubdivided, &divided, &shapes::cuboid(), [119, 239, 359]);
     });
 }
 
@@ -67,13 +68,14 @@ fn nor_does_one_of_solids_wax_and_refined_objects() {
 fn what_is_touched_follows_the_fire() {
     gpu_test(|device| {
         let bunny = with_triangles(&MeshSource::Bunny.load().unwrap(), 20_000);
-        let parameters = Parameters { speed_per_s: 0.1, flammability: 8, gamma: 1e-6, ..quick() };
+        // What turns with its block is touched too: small blocks.
+        let parameters = Parameters { speed_per_s: 0.1, flammability: 12, blocks: [40; 3], ..quick() };
         let mut fire = Fire::new(device, Variant::Shell, &parameters, &bunny);
         (0..200).for_each(|number| fire.frame(number));
         let (model, counts) = (fire.paper.model(), fire.state().counts);
         let touched: Vec<u32> = fire.read(&fire.paper.buffers().touched);
         let now = touched.iter().filter(|tick| **tick == counts.tick).count();
         let active = counts.active_vertices as usize;
-        assert!(active > 50 && now >= active && now < model.rest.len() / 4, "{active} active, {now} touched");
+        assert!(active > 50 && now >= active && now < model.rest.len() / 3, "{active} active, {now} touched");
     });
 }
