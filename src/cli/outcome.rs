@@ -52,8 +52,10 @@ pub fn usage(error: &clap::Error) -> u8 {
         let _unheard = io::stderr().write_all(escaped(&text, is_coloured).as_bytes());
     } else {
         let is_coloured = style().color;
-        // As with any other output: a reader that has left wants no more.
-        let _unheard = print(&if is_coloured { text.ansi().to_string() } else { text.to_string() });
+        let text = if is_coloured { text.ansi().to_string() } else { text.to_string() };
+        if let Err(failure) = print(&text) {
+            return failure.report();
+        }
     }
     u8::try_from(error.exit_code()).unwrap_or(2)
 }

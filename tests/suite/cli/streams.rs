@@ -100,7 +100,8 @@ fn a_reader_that_leaves_is_no_failure() {
 #[test]
 fn a_full_disk_behind_standard_output_is_one_line() {
     let out = folder();
-    for program in [bench(out.path()).args("--json --quiet --csv a.csv"), caustics("passes").tiny()] {
+    for program in [bench(out.path()).args("--json --quiet --csv a.csv"), caustics("passes").tiny(), caustics("--help")]
+    {
         let (_, stderr, code) = in_shell(&format!("{} >/dev/full", program.for_shell()), out.path());
         assert_eq!(code, Some(2), "{stderr}");
         assert_eq!(stderr.lines().count(), 1, "{stderr}");
