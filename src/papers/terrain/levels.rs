@@ -119,14 +119,6 @@ impl Levels {
         }
     }
 
-    /// The bounds of blocks of cells, by the names of the shaders.
-    pub fn bounds(&self) -> Vec<(&'static str, Resource)> {
-        match &self.packed {
-            None => self.resources(),
-            Some(packed) => vec![("coarser", (&packed.coarser).into())],
-        }
-    }
-
     /// All that the other passes read of them, by the shaders' names.
     pub fn resources(&self) -> Vec<(&'static str, Resource)> {
         match &self.tiles {

@@ -42,7 +42,7 @@ impl Starts {
         let of_map = |(index, map): (usize, &Map)| {
             let target = tiles(build, index)?;
             let own = [("terrain", (&map.terrain).into())];
-            let resources = [&own[..], &map.levels.bounds()].concat();
+            let resources = [&own[..], &map.levels.ray_resources()].concat();
             let pass = build.pass(("start", "3"), &program, (&target, Load::Discard), &resources)?;
             Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
         };
