@@ -70,7 +70,7 @@ void main() {
         }
     }
     // What has no room is counted: the host grows the buffers and repeats the run.
-    bool has_room = wanted > 0u && first + wanted <= frame.fragment_capacity;
+    bool has_room = wanted > 0u && first < MOST_SLOTS && first + wanted <= frame.fragment_capacity;
 
     uint head = is_mine ? heads[list] : NONE;
     uint used = 0u;

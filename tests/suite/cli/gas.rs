@@ -457,7 +457,7 @@ fn counts_that_would_come_round_are_refused() {
         let path = own_shaders(out.path()).join("gas/empty-lists.comp");
         let (text, zero) = (std::fs::read_to_string(&path).unwrap(), format!("{count} = 0u;"));
         assert!(text.contains(&zero), "{text}");
-        std::fs::write(&path, text.replace(&zero, &format!("{count} = 0xffffff80u;"))).unwrap();
+        std::fs::write(&path, text.replace(&zero, &format!("{count} = 0xfff00000u;"))).unwrap();
         let ended = small("render --quiet --shader-dir my-shaders").args(options).inside(out.path()).run();
         ended.refused(2, &[count.split('_').next().unwrap(), "--size"]);
     }
