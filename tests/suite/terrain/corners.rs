@@ -29,7 +29,7 @@ fn rays_that_read_corners_by_one_fetch_see_the_same() {
         adversaries().into_iter().map(|(name, map)| (name, alone(map))).collect();
     let adversaries = maps.len();
     maps.push(("volcano", alone(volcano(100))));
-    maps.push(("wide", alone(ridges(&mut Random::new(71), (211, 90), 3000.0))));
+    maps.push(("wide", alone(ridges(&mut Random::new(71), (1023, 601), 3000.0))));
     maps.push(("high", alone(ridges(&mut Random::new(72), (60, 130), 3000.0))));
     let two = [volcano(60), ridges(&mut Random::new(73), (65, 33), 900.0)].into_iter().flat_map(alone).collect();
     maps.push(("two", two));
