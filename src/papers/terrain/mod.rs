@@ -193,8 +193,8 @@ impl Terrain {
         };
         let scene = Scene::new(parameters, inputs);
         scene.check_tiles(label, variant)?;
-        let is_packed =
-            traversal == Traversal::Cells && packed::is_packed(shaders.device(), parameters, scene.height_maps());
+        let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
+        let is_packed = walks && packed::is_packed(shaders.device(), parameters, scene.height_maps());
         let build = Build { shaders, label, parameters, stage, traversal, is_packed };
         let on_device = |drape| DeviceScene::new(&build, &scene, drape);
         let casts = parameters.shadows && !inputs.objects.is_empty();
@@ -234,11 +234,7 @@ impl Terrain {
             device_scene,
             technique,
             objects: None,
-            corners: matches!(variant, Variant::DdaCompute | Variant::DdaFragment).then_some(if is_packed {
-                Corners::Packed
-            } else {
-                Corners::Image
-            }),
+            corners: walks.then_some(if is_packed { Corners::Packed } else { Corners::Image }),
         };
         if !inputs.objects.is_empty() {
             let casters = terrain.device_scene.as_ref().zip(device_tree.as_ref());
