@@ -20,7 +20,7 @@ pub const SCENE: &str = "--size 96x64 --map-size 64 --water-triangles 500 --plan
 pub const ONCE: &str = "--frames 2 --repeat 1 --warmup 1 --no-limits";
 
 /// Far above what any of these runs takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Index, UUID or part of the name of the device that the tests run on.
 pub fn device() -> String {
