@@ -7,7 +7,6 @@ use glam::Vec3;
 
 use super::buffers::Buffers;
 use super::draw::Draw;
-use super::fire_layer;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::parts::Parts;
@@ -28,8 +27,7 @@ host_block! {
         layer_scale: u32,
         last_pixel: [u32; 2],
         fire_light: f32,
-        _pad: f32,
-        layer_size: [u32; 2],
+        _pad: [f32; 3],
     }
 }
 
@@ -180,7 +178,6 @@ fn billboards(parameters: &Parameters, camera: &Camera) -> BillboardsBlock {
         layer_scale: parameters.fire_scale,
         last_pixel: [parameters.width - 1, parameters.height - 1],
         fire_light: parameters.fire_light,
-        _pad: 0.0,
-        layer_size: fire_layer::size(parameters),
+        _pad: [0.0; 3],
     }
 }

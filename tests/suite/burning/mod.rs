@@ -4,7 +4,6 @@ mod bending;
 mod dump;
 mod falling;
 mod fire;
-mod fire_layer;
 mod flames;
 mod flames_oracle;
 mod laws;

@@ -9,7 +9,6 @@ mod blocks;
 pub mod boundary;
 pub mod displacement;
 pub mod falling;
-pub mod fire_layer;
 #[cfg(test)]
 mod fixtures;
 pub mod flames;
