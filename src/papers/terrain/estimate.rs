@@ -38,7 +38,7 @@ impl Parameters {
         };
         let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
         let is_packed = walks && is_packed(device, self, inputs.maps.iter().map(|input| &*input.map));
-        let (mut levels, mut pools, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut levels, mut packed, mut pools, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         for input in inputs.maps {
             let samples = &input.map;
             let shape = Shape::new(samples.width(), samples.height());
@@ -52,7 +52,8 @@ impl Parameters {
                 // Of the pool, and the one that is on its way to it.
                 pools += (f64::from(columns) * f64::from(rows) + 1.0) * tile;
             } else {
-                levels += whole + if is_packed { packed_bytes(samples) as f64 } else { 0.0 };
+                levels += whole;
+                packed += if is_packed { packed_bytes(samples) as f64 } else { 0.0 };
             }
             let side = f64::from(shape.width.max(shape.height));
             // Level by level, or cell by cell.
@@ -106,6 +107,7 @@ impl Parameters {
             buffers: Vec::new(),
             bytes: vec![
                 (map, if on_device { levels } else { 0.0 } + indices),
+                ("corners", packed),
                 ("tile-memory", pools),
                 ("drape", NUMBER * if on_device { drape } else { 0.0 }),
                 ("size", (of_pixel + starts + light + objects + lit_objects + occlusion) * pixels),

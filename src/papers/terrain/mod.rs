@@ -466,7 +466,10 @@ impl Paper for Terrain {
             self.parameters.corners == Corners::Auto && self.parameters.interpolation == Interpolation::Bilinear;
         let unpacked =
             (wants_packed && self.corners == Some(Corners::Image)).then(|| packed::no_room(self.scene.height_maps()));
-        voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(unpacked).collect()
+        let unread = (self.parameters.corners == Corners::Packed && self.corners == Some(Corners::Image)).then(|| {
+            "`corners` packed is of bilinear cells alone: rays over bicubic terrain read the image of the levels".to_owned()
+        });
+        voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(unpacked).chain(unread).collect()
     }
 
     fn camera(&self) -> Option<Camera> {

@@ -1,6 +1,7 @@
 //! Rays that read a cell's corners by one fetch: nothing may be seen of it.
 
 use fumarole::gpu::Compiler;
+use fumarole::measure::Paper as _;
 use fumarole::papers::terrain::{Base, Corners, Inputs, Interpolation, Lod, MapInput, Parameters, Variant};
 use fumarole::scene::random::Random;
 
@@ -78,12 +79,13 @@ fn what_is_read_is_told() {
         let inputs = Inputs { maps: &maps, ..Inputs::default() };
         let of = |variant, corners, interpolation| {
             let parameters = Parameters { interpolation, ..small(corners, Base::Plane, Lod::Pixel) };
-            Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs).paper.corners()
+            let paper = Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs).paper;
+            (paper.corners(), paper.warnings().iter().any(|warning| warning.contains("`corners`")))
         };
         let fragment = Variant::DdaFragment;
-        assert_eq!(of(fragment, Corners::Auto, Interpolation::Bilinear), Some(Corners::Packed));
-        assert_eq!(of(fragment, Corners::Image, Interpolation::Bilinear), Some(Corners::Image));
-        assert_eq!(of(fragment, Corners::Packed, Interpolation::Bicubic), Some(Corners::Image));
-        assert_eq!(of(Variant::GpuFragment, Corners::Packed, Interpolation::Bilinear), None);
+        assert_eq!(of(fragment, Corners::Auto, Interpolation::Bilinear), (Some(Corners::Packed), false));
+        assert_eq!(of(fragment, Corners::Image, Interpolation::Bilinear), (Some(Corners::Image), false));
+        assert_eq!(of(fragment, Corners::Packed, Interpolation::Bicubic), (Some(Corners::Image), true));
+        assert_eq!(of(Variant::GpuFragment, Corners::Packed, Interpolation::Bilinear), (None, false));
     });
 }
