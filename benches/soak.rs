@@ -200,11 +200,12 @@ fn settled(machine: &mut Machine, paper: &mut impl Paper) -> Result<(), Error> {
     }
 }
 
-/// Resident memory of this process in kB; 0 where no system tells.
+/// Resident memory of this process in kB but that of files, whose pages the system drops and reads again as it likes; 0 where
+/// no system tells.
 fn resident() -> i64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok()).unwrap_or(0)
+    let of = |line: &str| line.strip_prefix("RssAnon:").or_else(|| line.strip_prefix("RssShmem:")).map(str::to_owned);
+    status.lines().filter_map(of).filter_map(|text| text.trim().trim_end_matches(" kB").parse::<i64>().ok()).sum()
 }
 
 fn main() -> ExitCode {

@@ -70,7 +70,7 @@ impl TileFile {
     /// temporary one, which needs no key. `name` is the map's, for messages, and `state` that of its files.
     ///
     /// # Errors
-    /// Of the source; [`Error::Output`] of a folder without room; [`Error::Input`] where `state` is another when the file is made:
+    /// Of the source; [`Error::Input`] of a folder without room, and where `state` is another when the file is made:
     /// the map was changed meanwhile.
     pub fn open(
         folder: Option<&Path>,
@@ -115,7 +115,10 @@ impl TileFile {
         let mut wrong = None;
         let made = file::write_unsynced(&path, |out| make(out, name, interpolation, source, &mut wrong));
         wrong.map_or(Ok(()), Err)?;
-        made?;
+        made.map_err(|error| {
+            let way_out = "or another cache by its variable (XDG_CACHE_HOME, LOCALAPPDATA under Windows), or `no-cache`";
+            Error::Input(format!("`map` {}: its tiles go to the user's cache: {error}, {way_out}", name.display()))
+        })?;
         check_same(name, &state_before, &state()?).inspect_err(|_| {
             let _ = fs::remove_file(&path);
         })?;
@@ -302,6 +305,15 @@ mod tests {
         assert!(path.exists());
         drop(temporary);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_cache_that_cannot_be_made_is_named_with_ways_out() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let [map, _] = maps();
+        let error = open(Some(&file.path().join("tiles")), &map, Interpolation::Bilinear).unwrap_err().to_string();
+        assert!(error.contains("`map` land") && error.contains("XDG_CACHE_HOME"), "{error}");
+        assert!(error.contains("`no-cache`"), "{error}");
     }
 
     /// A damage of the head, of the checksums or of the length is seen when the file is opened, and it is made anew.

@@ -237,9 +237,10 @@ fn grown_kb<S: Study>(variant: S::Variant, parameters: &[&str]) -> Result<i64, E
     Ok(resident_kb() - before_kb)
 }
 
-/// Resident memory of this process.
+/// Resident memory of this process but that of files, whose pages the system drops and reads again as it likes.
 fn resident_kb() -> i64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
-    line.trim().trim_end_matches(" kB").trim().parse().unwrap()
+    let of = |name: &str| status.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+    let kb = |name| of(name).trim().trim_end_matches(" kB").parse::<i64>().unwrap();
+    kb("RssAnon:") + kb("RssShmem:")
 }
