@@ -123,9 +123,9 @@ fn summary(record: &Record, output: &OutputArgs, page: Option<&Path>) -> Vec<Str
     let mut lines = vec![format!("{papers} in {variants}; the slowest pass of each")];
     lines.extend(record.runs.iter().filter_map(|run| {
         let (pass, ms) = slowest(run)?;
-        let near = pass.share_of_limit().zip(pass.bound.as_ref());
-        let near =
-            near.map_or_else(String::new, |(share, bound)| format!(", {:.0} % of limit ({bound})", 100.0 * share));
+        let near = pass.fraction_of_limit().zip(pass.bound.as_ref());
+        let near = near
+            .map_or_else(String::new, |(fraction, bound)| format!(", {:.0} % of limit ({bound})", 100.0 * fraction));
         Some(format!("  {} {}: {}, {ms:.1} ms{near}", run.paper, run.variant, pass.name))
     }));
     let pictures = record.runs.iter().filter_map(|run| Some(run.image.as_ref()?.path.clone()));

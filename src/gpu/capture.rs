@@ -93,12 +93,12 @@ impl RenderDoc {
         // SAFETY: no precondition.
         let last = unsafe { count() }.checked_sub(1)?;
         let mut bytes = 0;
-        // SAFETY: the length alone is asked for, then the name with room for it.
+        // SAFETY: the length alone is asked for, then the name of that capacity.
         let name = unsafe {
             get(last, ptr::null_mut(), &mut bytes, ptr::null_mut());
             let mut name = vec![0u8; bytes as usize + 1];
-            let mut room = bytes + 1;
-            (get(last, name.as_mut_ptr().cast(), &mut room, ptr::null_mut()) == 1).then_some(name)?
+            let mut capacity = bytes + 1;
+            (get(last, name.as_mut_ptr().cast(), &mut capacity, ptr::null_mut()) == 1).then_some(name)?
         };
         let end = name.iter().position(|&byte| byte == 0)?;
         Some(PathBuf::from(String::from_utf8_lossy(&name[..end]).into_owned()))

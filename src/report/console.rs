@@ -147,8 +147,8 @@ fn passes(run: &Run) -> Table {
             pass.submission.filter(|_| submissions).map_or_else(String::new, |index| index.to_string()),
             gpu(pass),
             fraction(pass, run).map_or_else(String::new, |fraction| format!("{:.1} %", 100.0 * fraction)),
-            pass.share_of_limit().map_or_else(String::new, |share| {
-                format!("{:.0} % {}", 100.0 * share, pass.bound.as_deref().unwrap_or_default())
+            pass.fraction_of_limit().map_or_else(String::new, |fraction| {
+                format!("{:.0} % {}", 100.0 * fraction, pass.bound.as_deref().unwrap_or_default())
             }),
             host(pass),
             wait(pass),

@@ -78,7 +78,7 @@ const COLUMNS: [Column; 72] = [
     ("bytes_written_at_most", |row| row.bytes(|bytes| Some(bytes.at_most?.written))),
     ("floor_ms", |row| row.of_pass(|pass| pass.floor_ms)),
     ("bound", |row| row.of_pass(|pass| pass.bound.clone())),
-    ("share_of_limit", |row| row.of_pass(Pass::share_of_limit)),
+    ("share_of_limit", |row| row.of_pass(Pass::fraction_of_limit)),
     ("limit_vertex_gvertices_s", |row| row.limit("vertex_gvertices_s")),
     ("limit_triangle_gtriangles_s", |row| row.limit("triangle_gtriangles_s")),
     ("limit_issue_ginvocations_s", |row| row.limit("issue_ginvocations_s")),

@@ -54,7 +54,7 @@ pub struct Pass {
 impl Pass {
     /// The floor as a fraction of the GPU time of the frame that it was counted in: how near the pass comes to the device's
     /// limits. Of older records as a fraction of the median GPU time.
-    pub fn share_of_limit(&self) -> Option<f64> {
+    pub fn fraction_of_limit(&self) -> Option<f64> {
         let ms = self.counted_ms.or_else(|| Some(self.gpu_ms.as_ref()?.median))?;
         Some(self.floor_ms? / Some(ms).filter(|ms| *ms > 0.0)?)
     }

@@ -68,8 +68,9 @@ pub(super) fn properties(pass: &Pass) -> Vec<String> {
     }
     lines.push(match (pass.floor_ms, &pass.bound) {
         (Some(floor), Some(bound)) => {
-            let share =
-                pass.share_of_limit().map_or_else(String::new, |share| format!(", {:.0} % of its time", 100.0 * share));
+            let share = pass
+                .fraction_of_limit()
+                .map_or_else(String::new, |fraction| format!(", {:.0} % of its time", 100.0 * fraction));
             let terms: Vec<String> = pass.floors.iter().map(|(name, ms)| format!("{name} {ms:.4}")).collect();
             format!("floor: {floor:.4} ms{share}, bound by {bound} (ms at the limits: {})", terms.join(", "))
         }

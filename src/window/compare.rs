@@ -80,8 +80,8 @@ struct Divider {
 }
 
 fn divide(ui: &Ui, face: &mut Interface, shown: Rect) -> Divider {
-    let share = face.picture_view.divider.unwrap_or(0.5);
-    let x = shown.left() + shown.width() * share;
+    let fraction = face.picture_view.divider.unwrap_or(0.5);
+    let x = shown.left() + shown.width() * fraction;
     let handle = Rect::from_x_y_ranges(x - 5.0..=x + 5.0, shown.y_range());
     let response = ui.interact(handle, ui.id().with("divider"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "divider"));
@@ -93,8 +93,8 @@ fn divide(ui: &Ui, face: &mut Interface, shown: Rect) -> Divider {
     {
         face.picture_view.divider = Some(((pointer.x - shown.left()) / shown.width()).clamp(0.0, 1.0));
     }
-    let share = face.picture_view.divider.unwrap_or(0.5);
-    Divider { x: shown.left() + shown.width() * share, is_moved: response.dragged() }
+    let fraction = face.picture_view.divider.unwrap_or(0.5);
+    Divider { x: shown.left() + shown.width() * fraction, is_moved: response.dragged() }
 }
 
 /// Values of both sides at a pixel.

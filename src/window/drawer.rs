@@ -77,8 +77,8 @@ fn show_memory(ui: &mut Ui, face: &mut Interface) {
             for resource in &resources {
                 ui.label(&resource.name);
                 ui.monospace(format!("{:>12}", bytes(resource.bytes)));
-                let share = resource.bytes as f32 / memory.total_bytes.max(1) as f32;
-                ui.add(egui::ProgressBar::new(share).desired_width(160.0).desired_height(8.0));
+                let fraction = resource.bytes as f32 / memory.total_bytes.max(1) as f32;
+                ui.add(egui::ProgressBar::new(fraction).desired_width(160.0).desired_height(8.0));
                 ui.weak(if resource.is_host_visible { "host visible" } else { "" });
                 ui.end_row();
             }

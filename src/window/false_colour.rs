@@ -44,8 +44,8 @@ named! {
 }
 
 impl Ramp {
-    /// The colour at `share` of the range.
-    fn colour(self, share: f64) -> Color32 {
+    /// The colour at `fraction` of the range.
+    fn colour(self, fraction: f64) -> Color32 {
         const VIRIDIS: [[u8; 3]; 9] = [
             [68, 1, 84],
             [71, 44, 122],
@@ -65,7 +65,7 @@ impl Ramp {
             Ramp::Viridis => &VIRIDIS,
             Ramp::Diverging => &DIVERGING,
         };
-        let at = share.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        let at = fraction.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
         let (low, part) = ((at as usize).min(stops.len() - 2), at - (at as usize).min(stops.len() - 2) as f64);
         let mix = |i: usize| (f64::from(stops[low][i]) * (1.0 - part) + f64::from(stops[low + 1][i]) * part).round();
         Color32::from_rgb(mix(0) as u8, mix(1) as u8, mix(2) as u8)
@@ -105,7 +105,7 @@ pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<C
     let sentinels = |channel: usize| values.statistics.get(channel).map_or(&[][..], |s| &s.sentinels);
     let (low, high) = drawing.range;
     let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
-    let share = |value: f64| ((value - low) * scale * gain).clamp(0.0, 1.0);
+    let fraction = |value: f64| ((value - low) * scale * gain).clamp(0.0, 1.0);
     let pixels = match drawing.channel {
         Channel::Colour => (0..texels)
             .map(|at| {
@@ -117,7 +117,7 @@ pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<C
                 if is_srgb {
                     return Color32::from_rgb(rgb[0] as u8, rgb[1] as u8, rgb[2] as u8);
                 }
-                let [red, green, blue] = rgb.map(|value| encoded(share(value)));
+                let [red, green, blue] = rgb.map(|value| encoded(fraction(value)));
                 Color32::from_rgb(red, green, blue)
             })
             .collect(),
@@ -135,7 +135,7 @@ pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<C
                     if drawing.ramp == Ramp::Labels {
                         return label(value);
                     }
-                    table[(share(value) * 255.0).round() as usize]
+                    table[(fraction(value) * 255.0).round() as usize]
                 })
                 .collect()
         }

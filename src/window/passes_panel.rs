@@ -128,19 +128,19 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
                 number(ui, own.and_then(|times| times.host_ms));
                 number(ui, own.and_then(|times| times.wait_ms));
             }
-            match own.and_then(|times| times.share) {
-                Some(share) => ui.add(
-                    egui::ProgressBar::new(share as f32)
+            match own.and_then(|times| times.fraction) {
+                Some(fraction) => ui.add(
+                    egui::ProgressBar::new(fraction as f32)
                         .desired_width(64.0)
                         .corner_radius(2.0)
-                        .text(format!("{:.1} %", share * 100.0)),
+                        .text(format!("{:.1} %", fraction * 100.0)),
                 ),
                 None => ui.label(""),
             };
             if has_floors {
                 let bound = own.and_then(|times| times.bound.clone()).unwrap_or_default();
-                let share = own.and_then(of_limit).map(|share| format!("{:5.1} %", share * 100.0));
-                ui.monospace(share.unwrap_or_default()).on_hover_text(bound);
+                let fraction = own.and_then(of_limit).map(|fraction| format!("{:5.1} %", fraction * 100.0));
+                ui.monospace(fraction.unwrap_or_default()).on_hover_text(bound);
             }
             ui.monospace(pass.calls.to_string());
             if has_counters {
@@ -262,10 +262,10 @@ fn show_bound(ui: &mut Ui, face: &mut Interface, index: usize) {
         face.ask(Request::Limits);
     }
     let pass = face.session.times.first().and_then(|side| side.passes.get(index));
-    if let Some((share, floor_ms, bound)) =
+    if let Some((fraction, floor_ms, bound)) =
         pass.and_then(|pass| Some((of_limit(pass)?, pass.floor_ms?, pass.bound.as_ref()?)))
     {
-        ui.label(format!("{:.1} % of the device's limit: {bound} takes {floor_ms:.3} ms at least", share * 100.0));
+        ui.label(format!("{:.1} % of the device's limit: {bound} takes {floor_ms:.3} ms at least", fraction * 100.0));
     } else if face.session.limits.is_some() && !face.measure.counters {
         ui.weak("Counters (K) give its share of them.");
     }

@@ -3,7 +3,7 @@
 
 use egui::Color32;
 
-/// A whole share.
+/// A whole weight.
 const WHOLE: u16 = 256;
 
 /// The pixels that each pixel of the smaller picture covers, along one axis.
@@ -13,7 +13,7 @@ struct Spans {
     /// The first of them.
     firsts: Vec<usize>,
     /// Shares of them, which sum up to [`WHOLE`], one pixel's after the other's.
-    shares: Vec<u16>,
+    weights: Vec<u16>,
 }
 
 impl Spans {
@@ -22,24 +22,24 @@ impl Spans {
         let covered = from as f64 / to as f64;
         // One that begins inside a pixel ends inside another.
         let taps = (covered.ceil() as usize + 1).min(from);
-        let (mut firsts, mut shares) = (Vec::with_capacity(to), Vec::with_capacity(to * taps));
+        let (mut firsts, mut weights) = (Vec::with_capacity(to), Vec::with_capacity(to * taps));
         for index in 0..to {
             let start = index as f64 * covered;
             let first = (start as usize).min(from - taps);
             // Rounded as sums, so that none gets lost.
             let up_to = |pixel: usize| {
-                let share = ((pixel as f64 - start) / covered).clamp(0.0, 1.0);
-                (share * f64::from(WHOLE)).round() as u16
+                let weight = ((pixel as f64 - start) / covered).clamp(0.0, 1.0);
+                (weight * f64::from(WHOLE)).round() as u16
             };
             firsts.push(first);
-            shares.extend((first..first + taps).map(|pixel| up_to(pixel + 1) - up_to(pixel)));
+            weights.extend((first..first + taps).map(|pixel| up_to(pixel + 1) - up_to(pixel)));
         }
-        Spans { taps, firsts, shares }
+        Spans { taps, firsts, weights }
     }
 
-    /// The first pixel and the shares of each pixel.
+    /// The first pixel and the weights of each pixel.
     fn each(&self) -> impl Iterator<Item = (usize, &[u16])> {
-        self.firsts.iter().copied().zip(self.shares.chunks_exact(self.taps))
+        self.firsts.iter().copied().zip(self.weights.chunks_exact(self.taps))
     }
 }
 
@@ -54,20 +54,20 @@ pub fn reduced(bytes: &[u8], from: [usize; 2], to: [usize; 2]) -> Option<Vec<Col
     let width = from[0] * 4;
     let mut sums = vec![0_u16; width];
     let mut pixels = Vec::with_capacity(to[0] * to[1]);
-    for (first, shares) in rows.each() {
+    for (first, weights) in rows.each() {
         sums.fill(0);
-        let covered = shares.iter().zip(bytes[first * width..].chunks_exact(width));
-        for (share, line) in covered.filter(|(share, _)| **share > 0) {
-            // A byte times a whole share is the most that there is.
-            sums.iter_mut().zip(line).for_each(|(sum, byte)| *sum += share * u16::from(*byte));
+        let covered = weights.iter().zip(bytes[first * width..].chunks_exact(width));
+        for (weight, line) in covered.filter(|(weight, _)| **weight > 0) {
+            // A byte times a whole weight is the most that there is.
+            sums.iter_mut().zip(line).for_each(|(sum, byte)| *sum += weight * u16::from(*byte));
         }
-        pixels.extend(columns.each().map(|(first, shares)| {
+        pixels.extend(columns.each().map(|(first, weights)| {
             let mut mean = [1_u32 << 15; 3];
-            for (share, sum) in shares.iter().zip(sums[first * 4..].chunks_exact(4)) {
-                let share = u32::from(*share);
-                mean[0] += share * u32::from(sum[0]);
-                mean[1] += share * u32::from(sum[1]);
-                mean[2] += share * u32::from(sum[2]);
+            for (weight, sum) in weights.iter().zip(sums[first * 4..].chunks_exact(4)) {
+                let weight = u32::from(*weight);
+                mean[0] += weight * u32::from(sum[0]);
+                mean[1] += weight * u32::from(sum[1]);
+                mean[2] += weight * u32::from(sum[2]);
             }
             let [red, green, blue] = mean.map(|mean| (mean >> 16) as u8);
             Color32::from_rgb(red, green, blue)

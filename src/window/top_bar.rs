@@ -208,9 +208,9 @@ pub fn show_status(ui: &mut Ui, face: &mut Interface) {
                 Work::Film => "drawing the film",
                 Work::Limits => "measuring the device",
             };
-            let share = progress.done as f32 / progress.total.max(1) as f32;
+            let fraction = progress.done as f32 / progress.total.max(1) as f32;
             let text = format!("{what} {} / {}", progress.done, progress.total);
-            ui.add(ProgressBar::new(share).desired_width(220.0).text(text));
+            ui.add(ProgressBar::new(fraction).desired_width(220.0).text(text));
             let can_end = matches!(progress.what, Work::Replay | Work::Film);
             if can_end && ui.small_button("Stop").on_hover_text("Esc").clicked() {
                 face.ask(Request::Cancel);

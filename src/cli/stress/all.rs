@@ -95,8 +95,8 @@ impl Visitor for Papers<'_> {
             suffix: String::new(),
         };
         let left_s = limits.budget.unwrap_or(BUDGET_S) - self.started.elapsed().as_secs_f64();
-        let share_s = left_s.max(0.0) / f64::from(self.left.max(1));
+        let budget_s = left_s.max(0.0) / f64::from(self.left.max(1));
         self.left = self.left.saturating_sub(1);
-        ascent.publish(share_s)
+        ascent.publish(budget_s)
     }
 }

@@ -411,8 +411,8 @@ impl Parameters {
     /// Planes of a receiver whose middle is at that place: all, or by its distance from the camera.
     pub fn planes_at(&self, middle: Vec3) -> u32 {
         let Some(within_m) = self.planes_within_m else { return self.planes };
-        let share = f64::from(within_m) / f64::from(self.camera.eye.distance(middle));
-        (f64::from(self.planes) * share.min(1.0)).ceil().max(1.0) as u32
+        let fraction = f64::from(within_m) / f64::from(self.camera.eye.distance(middle));
+        (f64::from(self.planes) * fraction.min(1.0)).ceil().max(1.0) as u32
     }
 
     /// Width over height of the picture.

@@ -231,9 +231,9 @@ mod tests {
             let bends: Vec<(f64, f64)> = places.map(bend).collect();
             let mean = |of: fn(&(f64, f64)) -> f64| bends.iter().map(of).sum::<f64>() / bends.len() as f64;
             let alike = (mean(|(x, _)| x * x) * mean(|(_, z)| z * z)).powf(0.25);
-            let share = mean(|(x, z)| (x * z).sqrt()) / alike;
-            println!("seed {seed}: each by its own bend would be {share:.3} times as many cells");
-            assert!((0.65..0.95).contains(&share), "{share}");
+            let ratio = mean(|(x, z)| (x * z).sqrt()) / alike;
+            println!("seed {seed}: each by its own bend would be {ratio:.3} times as many cells");
+            assert!((0.65..0.95).contains(&ratio), "{ratio}");
         }
     }
 }

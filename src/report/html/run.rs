@@ -71,7 +71,7 @@ const COLUMNS: [Column; 18] = [
     ("GPU ms", |pass, _| Some(pass.gpu_ms.as_ref()?.median), 4),
     ("± MAD", |pass, _| pass.gpu_ms.as_ref()?.mad, 4),
     ("% of frame", |pass, run| Some(100.0 * pass.busy_ms()? / run.median_frame_ms()?), 1),
-    ("share of limit, %", |pass, _| Some(100.0 * pass.share_of_limit()?), 0),
+    ("share of limit, %", |pass, _| Some(100.0 * pass.fraction_of_limit()?), 0),
     ("floor ms", |pass, _| pass.floor_ms, 4),
     ("host ms", |pass, _| Some(pass.host_ms.as_ref()?.median), 4),
     ("wait ms", |pass, _| Some(pass.wait_ms.as_ref()?.median), 4),

@@ -159,7 +159,7 @@ pub struct PassTimes {
     /// Milliseconds of waiting.
     pub wait_ms: Option<f64>,
     /// Its part of the sum of all passes' times, 0 to 1.
-    pub share: Option<f64>,
+    pub fraction: Option<f64>,
     /// Counters of a counted frame.
     pub counters: Option<Counters>,
     /// Least time of the counted work at the device's limits, as a record has it; where both were measured.

@@ -118,7 +118,7 @@ impl Times {
                 gpu_ms: pass.gpu.median(),
                 host_ms: pass.host.median(),
                 wait_ms: pass.wait.median(),
-                share: None,
+                fraction: None,
                 counters: pass.counts.map(counters),
                 floor_ms: least.as_ref().map(|least| least.ms),
                 bound: least.map(|least| least.bound.to_owned()),
@@ -130,7 +130,7 @@ impl Times {
         for pass in &mut passes {
             // Before the first timestamps, host work is not all that there is.
             let is_timed = self.timestamped > 0 && pass.gpu_ms.or(pass.host_ms).is_some() && sum_ms > 0.0;
-            pass.share = is_timed.then(|| time_ms(pass) / sum_ms);
+            pass.fraction = is_timed.then(|| time_ms(pass) / sum_ms);
         }
         SideTimes { samples: self.timestamped.min(most), frame_ms: self.frames.median(), passes }
     }

@@ -107,7 +107,7 @@ fn times_come_on_request_and_then_there_is_peace() {
             let times = worker.wait_for(|event| match event {
                 Event::Times(sides) if sides[0].samples == 0 => {
                     // Host work alone is no part of a sum that is not known.
-                    assert!(sides[0].passes.iter().all(|pass| pass.share.is_none()), "{paper}: {sides:?}");
+                    assert!(sides[0].passes.iter().all(|pass| pass.fraction.is_none()), "{paper}: {sides:?}");
                     None
                 }
                 Event::Times(sides) if sides[0].samples == 3 => {
@@ -124,7 +124,7 @@ fn times_come_on_request_and_then_there_is_peace() {
             assert_eq!(times.passes.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>(), names, "{paper}");
             assert!(times.frame_ms.is_some_and(|ms| ms > 0.0));
             assert!(times.passes.iter().all(|pass| pass.gpu_ms.or(pass.host_ms).is_some()), "{paper}: {times:?}");
-            let sum: f64 = times.passes.iter().filter_map(|pass| pass.share).sum();
+            let sum: f64 = times.passes.iter().filter_map(|pass| pass.fraction).sum();
             assert!((sum - 1.0).abs() < 1e-9, "{sum}");
             // Frames for times are not shown, and nothing is drawn when all samples are there.
             std::thread::sleep(std::time::Duration::from_millis(500));

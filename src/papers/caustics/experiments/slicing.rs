@@ -123,12 +123,12 @@ pub fn fewer_planes(
     let distance_m = setup.parameters.camera.eye.distance(middle);
     setup.parameters.planes_within_m = None;
     let (every, mask) = masked_picture(machine, &setup, scene, Variant::Culled)?;
-    let row = |share: f32| {
-        setup.parameters.planes_within_m = Some(distance_m * share);
+    let row = |fraction: f32| {
+        setup.parameters.planes_within_m = Some(distance_m * fraction);
         let (fewer, _) = masked_picture(machine, &setup, scene, Variant::Culled)?;
         let Difference { mean, p99, .. } = compare(&every, &fewer, Some(&mask))?;
         let drawn = setup.parameters.planes_at(middle);
-        Ok(vec![json!(mesh.name), json!(planes), json!(share), json!(drawn), json!(mean), json!(p99)])
+        Ok(vec![json!(mesh.name), json!(planes), json!(fraction), json!(drawn), json!(mean), json!(p99)])
     };
     [0.5, 0.25, 0.125].into_iter().map(row).collect()
 }

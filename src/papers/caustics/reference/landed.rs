@@ -55,14 +55,14 @@ pub fn landed_map(triangles: impl IntoIterator<Item = LandedTriangle>, resolutio
             (inside(low.y)..=inside(high.y)).flat_map(|row| (inside(low.x)..=inside(high.x)).map(move |c| (c, row)))
         {
             let center = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
-            let share = if whole > 1e-12 {
+            let fraction = if whole > 1e-12 {
                 let part = clip(&corners.map(|p| p - center), DVec2::splat(0.5));
                 let of_mean = 1.0 + rise.dot(center + centroid(&part) - middle);
                 area(&part) / whole * of_mean
             } else {
                 f64::from(u8::from((middle - center).abs().max_element() <= 0.5))
             };
-            map[row * resolution + column] += light * share;
+            map[row * resolution + column] += light * fraction;
         }
     }
     map

@@ -49,7 +49,7 @@ pub fn render(run: &Run, style: Style) -> String {
             count(counts.fragments),
             count(counts.samples_passed),
             number(pass.floor_ms, 2),
-            pass.share_of_limit().map_or(String::new(), |share| format!("{:.0} %", 100.0 * share)),
+            pass.fraction_of_limit().map_or(String::new(), |fraction| format!("{:.0} %", 100.0 * fraction)),
             number(points::points_ms(run, pass), 2),
         ]);
     }

@@ -68,7 +68,7 @@ impl Sheet<'_> {
         View { point, distance_m: apart.length(), at_least_m: box_squared.max(mean_squared).max(0.0).sqrt() }
     }
 
-    /// In the cell: u, v and the share of the height.
+    /// In the cell: u, v and the fraction of the height.
     fn local<T: Copy>(&self, [p, q]: [T; 2], number: impl Fn(f64) -> T) -> ([T; 2], T) {
         match self.wall {
             None => ([p, q], number(1.0)),
@@ -78,20 +78,20 @@ impl Sheet<'_> {
     }
 
     fn point(&self, parameters: [f64; 2]) -> DVec3 {
-        let ([u, v], share) = self.local(parameters, |x| x);
+        let ([u, v], fraction) = self.local(parameters, |x| x);
         let at = |axis: usize, x: f64| self.map.origin[axis] + self.map.spacing[axis] * (self.cell[axis] as f64 + x);
-        self.base.point(Place { uv: [at(0, u), at(1, v)], h: share * self.patch.height(u, v) })
+        self.base.point(Place { uv: [at(0, u), at(1, v)], h: fraction * self.patch.height(u, v) })
     }
 
     /// Bounds of the derivatives of F = P + n h along p and q.
     fn derivatives(&self, square: &[Interval; 2]) -> [Vector; 2] {
-        let ([u, v], share) = self.local(*square, Interval::point);
+        let ([u, v], fraction) = self.local(*square, Interval::point);
         let slopes = self.patch.slopes(u, v);
         let swing = slopes[0].magnitude() * u.radius() + slopes[1].magnitude() * v.radius();
         let height = Interval::around(self.patch.height(u.center(), v.center()), swing);
-        let (normal, tangents) = self.tangents(u, v, height * share);
+        let (normal, tangents) = self.tangents(u, v, height * fraction);
         let along_axis = |axis: usize| {
-            let climb = scale(normal, slopes[axis] * share);
+            let climb = scale(normal, slopes[axis] * fraction);
             add(scale(tangents[axis], Interval::point(self.map.spacing[axis])), climb)
         };
         match self.wall {
