@@ -35,8 +35,13 @@ pub(crate) struct QueryPool {
     counter: Counter,
     capacity: u32,
     used: u32,
+    /// Queries from the front on that are reset, or used.
+    ready: u32,
     values: Vec<u64>,
 }
+
+/// Queries that are reset at once when a frame wants more than any before it: a pool holds far more than most take.
+const RESET_TOGETHER: u32 = 256;
 
 impl QueryPool {
     pub fn new(device: &Arc<Device>, counter: Counter, capacity: u32) -> Result<Self, Error> {
@@ -65,23 +70,33 @@ impl QueryPool {
             counter,
             capacity,
             used: 0,
+            ready: 0,
             values: vec![0; capacity as usize * counter.values()],
         })
     }
 
     /// Starts over; nothing recorded with this pool is in flight.
     pub fn reset(&mut self) {
-        // SAFETY: the fence of the last submission was waited for, so no query of this pool is in use.
-        unsafe { self.device.raw.reset_query_pool(self.raw, 0, self.capacity) };
-        self.used = 0;
+        if self.used > 0 {
+            // SAFETY: the fence of the last submission was waited for, so no query of this pool is in use.
+            unsafe { self.device.raw.reset_query_pool(self.raw, 0, self.used) };
+            self.used = 0;
+        }
     }
 
     /// The next query, or `None` when the pool is spent.
     pub fn take(&mut self) -> Option<u32> {
-        (self.used < self.capacity).then(|| {
-            self.used += 1;
-            self.used - 1
-        })
+        if self.used == self.capacity {
+            return None;
+        }
+        if self.used == self.ready {
+            let count = RESET_TOGETHER.min(self.capacity - self.ready);
+            // SAFETY: these queries lie behind all that were ever taken, so none of them is in use.
+            unsafe { self.device.raw.reset_query_pool(self.raw, self.ready, count) };
+            self.ready += count;
+        }
+        self.used += 1;
+        Some(self.used - 1)
     }
 
     /// The values of the queries used so far, `values()` a query.

@@ -16,24 +16,34 @@ impl Rock {
     /// Plates of crust with bright cracks between them, 512 x 512 texels. They are made once.
     pub fn built_in() -> &'static Rock {
         static ROCK: OnceLock<Rock> = OnceLock::new();
-        ROCK.get_or_init(|| Rock::made_by(Noise::plates))
+        ROCK.get_or_init(|| {
+            let plates = Plates::new();
+            Rock::made_by(|texel| plates.at(texel))
+        })
     }
 
     /// The grain of a crust that has no cracks, of as many texels. It is made once.
     pub fn crust() -> &'static Rock {
         static ROCK: OnceLock<Rock> = OnceLock::new();
-        ROCK.get_or_init(|| Rock::made_by(Noise::crust))
+        ROCK.get_or_init(|| {
+            let crust = Crust::new();
+            Rock::made_by(|texel| crust.at(texel))
+        })
     }
 
-    fn made_by(value: fn(&Noise, [f32; 2]) -> f32) -> Rock {
-        let noise = Noise::new();
+    fn made_by(value: impl Fn([u32; 2]) -> f32) -> Rock {
         let texel = |i: u32| {
-            let value = value(&noise, [i % SIZE, i / SIZE].map(|c| (c as f32 + 0.5) / SIZE as f32));
+            let value = value([i % SIZE, i / SIZE]);
             let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
             [r, g, b, 255]
         };
         Rock { width: SIZE, height: SIZE, texels: (0..SIZE * SIZE).map(texel).collect() }
     }
+}
+
+/// The place of a texel's centre along an axis, in [0, 1) of the texture.
+fn center(texel: u32) -> f32 {
+    (texel as f32 + 0.5) / SIZE as f32
 }
 
 /// Random values on lattices that repeat after the whole texture.
@@ -54,69 +64,175 @@ impl Noise {
     }
 
     /// The value of a lattice point, uniform in [0, 1); `period` points make a side.
-    fn lattice(&self, x: i32, y: i32, period: u32, layer: u32) -> f32 {
+    fn point(&self, x: usize, y: usize, period: u32, layer: u32) -> f32 {
         let mix = |seed: usize, with: usize| usize::from(self.order[(seed + with) % TABLE]);
-        let wrapped = |c: i32| c.rem_euclid(period as i32) as usize;
-        self.values[mix(mix(mix(layer as usize, period as usize), wrapped(x)), wrapped(y))]
+        self.values[mix(mix(mix(layer as usize, period as usize), x), y)]
     }
 
-    /// Smooth noise in [0, 1) at a place in [0, 1) of the texture.
-    fn smooth(&self, [x, y]: [f32; 2], period: u32, layer: u32) -> f32 {
-        let (x, y) = (x * period as f32, y * period as f32);
-        let ease = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-        let (tx, ty) = (ease(x - x.floor()), ease(y - y.floor()));
-        let (i, j) = (x.floor() as i32, y.floor() as i32);
-        let at = |dx, dy| self.lattice(i + dx, j + dy, period, layer);
+    /// All points of a lattice: far fewer than the texels that read them.
+    fn lattice(&self, period: u32, layer: u32) -> Lattice {
+        let side = period as usize;
+        let values = (0..side * side).map(|i| self.point(i % side, i / side, period, layer)).collect();
+        let tap = |texel: u32| {
+            let place = center(texel) * period as f32;
+            let t = place - place.floor();
+            let first = place as usize;
+            Tap { first, next: (first + 1) % side, weight: t * t * t * (t * (t * 6.0 - 15.0) + 10.0) }
+        };
+        Lattice { period, values, taps: (0..SIZE).map(tap).collect() }
+    }
+
+    /// Octaves of smooth noise, each twice as fine and half as strong.
+    fn octaves(&self, period: u32, count: u32, layer: u32) -> Octaves {
+        Octaves((0..count).map(|octave| self.lattice(period << octave, layer + octave)).collect())
+    }
+}
+
+/// The values of a lattice that repeats after the whole texture, row by row.
+struct Lattice {
+    /// Points a side.
+    period: u32,
+    values: Vec<f32>,
+    /// Of each texel, along either axis.
+    taps: Vec<Tap>,
+}
+
+/// The two points along an axis between which a texel's centre lies, and the second one's weight.
+struct Tap {
+    first: usize,
+    next: usize,
+    weight: f32,
+}
+
+impl Lattice {
+    fn wrapped(&self, coordinate: i32) -> usize {
+        coordinate.rem_euclid(self.period as i32) as usize
+    }
+
+    /// Smooth noise in [0, 1) at a texel.
+    fn smooth(&self, texel: [u32; 2]) -> f32 {
+        let side = self.period as usize;
+        let [across, down] = texel.map(|at| &self.taps[at as usize]);
+        let [row, next_row] = [down.first, down.next].map(|row| &self.values[row * side..][..side]);
         let blend = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        blend(blend(at(0, 0), at(1, 0), tx), blend(at(0, 1), at(1, 1), tx), ty)
+        let along = |row: &[f32]| blend(row[across.first], row[across.next], across.weight);
+        blend(along(row), along(next_row), down.weight)
     }
+}
 
-    /// Octaves of smooth noise, each twice as fine and half as strong, in [0, 1).
-    fn octaves(&self, place: [f32; 2], period: u32, count: u32, layer: u32) -> f32 {
-        let weight = |octave: u32| 0.5f32.powi(octave as i32);
-        let sum: f32 = (0..count).map(|o| weight(o) * self.smooth(place, period << o, layer + o)).sum();
-        sum / (0..count).map(weight).sum::<f32>()
+struct Octaves(Vec<Lattice>);
+
+impl Octaves {
+    /// In [0, 1), at a texel.
+    fn at(&self, texel: [u32; 2]) -> f32 {
+        let weights = || std::iter::successors(Some(1.0_f32), |weight| Some(0.5 * weight)).take(self.0.len());
+        let sum: f32 = weights().zip(&self.0).map(|(weight, lattice)| weight * lattice.smooth(texel)).sum();
+        sum / weights().sum::<f32>()
+    }
+}
+
+/// Cells beside one along an axis, in which the two nearest seed points may lie: the nearer ones first.
+const NEAR: [i32; 5] = [0, -1, 1, -2, 2];
+
+/// A seed point in each cell of a lattice, whose plates are what lies nearest to it.
+struct Seeds {
+    across: Lattice,
+    down: Lattice,
+}
+
+impl Seeds {
+    fn new(noise: &Noise, period: u32, layer: u32) -> Self {
+        Seeds { across: noise.lattice(period, layer), down: noise.lattice(period, layer + 1) }
     }
 
     /// Distance of the second nearest seed point less that of the nearest, lattice cells: 0 on the border of a plate.
-    fn border(&self, [x, y]: [f32; 2], period: u32, layer: u32) -> f32 {
-        let (x, y) = (x * period as f32, y * period as f32);
+    fn border(&self, [x, y]: [f32; 2]) -> f32 {
+        let (period, side) = (self.across.period as f32, self.across.period as usize);
+        let (x, y) = (x * period, y * period);
         let (i, j) = (x.floor() as i32, y.floor() as i32);
-        let mut nearest = [f32::INFINITY; 2];
-        for (dx, dy) in (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (dx, dy))) {
-            let (cx, cy) = (i + dx, j + dy);
-            let px = cx as f32 + self.lattice(cx, cy, period, layer) - x;
-            let py = cy as f32 + self.lattice(cx, cy, period, layer + 1) - y;
-            let distance = (px * px + py * py).sqrt();
-            if distance < nearest[0] {
-                nearest = [distance, nearest[0]];
-            } else {
-                nearest[1] = nearest[1].min(distance);
+        let columns = NEAR.map(|at| self.across.wrapped(i + at));
+        let mut nearest_squared = [f32::INFINITY; 2];
+        // No point of cells so far away is among the two nearest.
+        let is_beyond = |cell: i32, from: f32, second: f32| {
+            let apart = (cell as f32 - from).max(from - (cell + 1) as f32);
+            apart > 0.0 && apart * apart >= second
+        };
+        for cy in NEAR.map(|at| j + at) {
+            if is_beyond(cy, y, nearest_squared[1]) {
+                continue;
+            }
+            let row = self.across.wrapped(cy) * side;
+            for (at, column) in NEAR.into_iter().zip(columns) {
+                if is_beyond(i + at, x, nearest_squared[1]) {
+                    continue;
+                }
+                let px = (i + at) as f32 + self.across.values[row + column] - x;
+                let py = cy as f32 + self.down.values[row + column] - y;
+                let squared = px * px + py * py;
+                if squared < nearest_squared[0] {
+                    nearest_squared = [squared, nearest_squared[0]];
+                } else {
+                    nearest_squared[1] = nearest_squared[1].min(squared);
+                }
             }
         }
-        nearest[1] - nearest[0]
+        let [nearest, second] = nearest_squared.map(f32::sqrt);
+        second - nearest
+    }
+}
+
+/// Lighter and darker, with small dark pits, which are burst bubbles.
+struct Crust {
+    broad: Octaves,
+    grain: Octaves,
+    pits: Lattice,
+}
+
+impl Crust {
+    fn new() -> Self {
+        let noise = Noise::new();
+        Crust { broad: noise.octaves(4, 6, 70), grain: noise.octaves(40, 3, 80), pits: noise.lattice(56, 90) }
     }
 
-    /// Lighter and darker, with small dark pits, which are burst bubbles.
-    fn crust(&self, place: [f32; 2]) -> f32 {
-        let broad = stretched(self.octaves(place, 4, 6, 70), 1.8);
-        let grain = stretched(self.octaves(place, 40, 3, 80), 2.2);
-        let pits = 1.0 - stretched(self.smooth(place, 56, 90), 3.0);
+    fn at(&self, texel: [u32; 2]) -> f32 {
+        let broad = stretched(self.broad.at(texel), 1.8);
+        let grain = stretched(self.grain.at(texel), 2.2);
+        let pits = 1.0 - stretched(self.pits.smooth(texel), 3.0);
         (0.7 + 0.1 * broad + 0.2 * grain) * (1.0 - 0.15 * pits * pits * pits)
     }
+}
 
-    fn plates(&self, place: [f32; 2]) -> f32 {
+struct Plates {
+    bends: [Octaves; 2],
+    crust: Octaves,
+    grain: Octaves,
+    large: Seeds,
+    small: Seeds,
+}
+
+impl Plates {
+    fn new() -> Self {
+        let noise = Noise::new();
+        Plates {
+            bends: [10, 20].map(|layer| noise.octaves(5, 6, layer)),
+            crust: noise.octaves(3, 7, 50),
+            grain: noise.octaves(32, 4, 60),
+            large: Seeds::new(&noise, PLATES, 30),
+            small: Seeds::new(&noise, 2 * PLATES, 40),
+        }
+    }
+
+    fn at(&self, texel: [u32; 2]) -> f32 {
         // Plates do not break along straight lines.
-        let bend = |layer| 0.16 * (self.octaves(place, 5, 6, layer) - 0.5);
-        let bent = [place[0] + bend(10), place[1] + bend(20)];
-        let crust = stretched(self.octaves(place, 3, 7, 50), 2.0);
-        let grain = stretched(self.octaves(place, 32, 4, 60), 2.6);
-        let crack = |width: f32, period, layer| {
-            let t = (1.0 - self.border(bent, period, layer) / width).max(0.0);
+        let bent = [0, 1].map(|axis| center(texel[axis]) + 0.16 * (self.bends[axis].at(texel) - 0.5));
+        let crust = stretched(self.crust.at(texel), 2.0);
+        let grain = stretched(self.grain.at(texel), 2.6);
+        let crack = |width: f32, seeds: &Seeds| {
+            let t = (1.0 - seeds.border(bent) / width).max(0.0);
             t * t
         };
         // Cracks gape here and are nearly closed there.
-        let cracks = crack(0.12 + 0.32 * grain, PLATES, 30).max(0.5 * crack(0.1 + 0.3 * crust, 2 * PLATES, 40));
+        let cracks = crack(0.12 + 0.32 * grain, &self.large).max(0.5 * crack(0.1 + 0.3 * crust, &self.small));
         // Lighter and darker crust, grainy; where it is torn the rock is fresh and bright.
         let crust = 0.05 + (0.1 + 0.45 * crust * crust) * (0.25 + 1.5 * grain * grain);
         (crust + (1.0 - crust) * cracks).min(1.0)

@@ -226,10 +226,10 @@ fn times_are_asked_for_and_shown_with_their_share() {
     let mut harness = harness();
     let times = Layout::default().samples;
     assert_eq!(press(&mut harness, egui::Key::M), [Request::Measure(MeasureChoice { times, counters: false })]);
-    let of = |name: &str, ms: f64, share: f64| PassTimes {
+    let of = |name: &str, ms: f64, fraction: f64| PassTimes {
         name: name.into(),
         gpu_ms: Some(ms),
-        share: Some(share),
+        fraction: Some(fraction),
         floor_ms: Some(ms / 2.0),
         bound: Some("fill".into()),
         ..PassTimes::default()

@@ -7,6 +7,7 @@ mod relief;
 use super::map::check_size;
 use super::{HeightMap, Samples};
 use crate::scene::Error;
+use erosion::Gullies;
 use glam::{DVec2, Vec2};
 use noise::Noise;
 use rayon::prelude::*;
@@ -30,7 +31,8 @@ const CONTROLS: usize = KNOTS + 3;
 pub fn volcano(side: u32, seed: u64) -> Result<HeightMap, Error> {
     check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
     let spacing_m = f64::from(EXTENT_M) / f64::from(side - 1);
-    HeightMap::new(side, side, Terrain::of(seed).steps(side as usize))?.with_spacing_m(DVec2::splat(spacing_m))
+    HeightMap::new(side, side, Terrain::of(seed, side as usize).steps(side as usize))?
+        .with_spacing_m(DVec2::splat(spacing_m))
 }
 
 /// The rows of [`volcano()`] of a side and a seed, made when they are asked for.
@@ -41,7 +43,7 @@ pub(super) struct VolcanoRows {
 
 impl VolcanoRows {
     pub(super) fn new(side: u32, seed: u64) -> Self {
-        VolcanoRows { terrain: Terrain::of(seed), side }
+        VolcanoRows { terrain: Terrain::of(seed, side as usize), side }
     }
 
     /// All but the samples.
@@ -60,53 +62,85 @@ impl VolcanoRows {
 
 /// The terrain: a uniform cubic B-spline surface, so smooth that its slope has no kink.
 struct Terrain {
-    /// CONTROLS x CONTROLS heights in metres, from the north-west.
+    /// CONTROLS x CONTROLS heights in metres, from the north-west; 0 where no sample depends on one.
     controls_m: Vec<f32>,
+    /// Bounds of the surface: a B-spline stays within its control values.
+    range_m: (f32, f32),
 }
 
-/// The terrain made last and its seed: whoever compares sizes samples one terrain many times.
-static LATEST: Mutex<Option<(u64, Arc<Terrain>)>> = Mutex::new(None);
+/// The seed that is made most, and the range of its terrain in metres: the steps of a few samples need no other of it.
+const USUAL: (u64, (f32, f32)) = (1, (500.061_83, 1_716.071_8));
+
+/// Sides of more samples than this depend on most control values.
+const FEW: usize = CONTROLS / 8;
+
+/// The terrain made last, its seed, and the side of the few samples that it was made for: whoever compares sizes samples one
+/// terrain many times.
+static LATEST: Mutex<Option<(u64, Option<usize>, Arc<Terrain>)>> = Mutex::new(None);
 
 impl Terrain {
-    /// The terrain of a seed, from [`LATEST`] if it is there.
-    fn of(seed: u64) -> Arc<Self> {
+    /// The terrain of a seed, for samples of that side, from [`LATEST`] if it is there.
+    fn of(seed: u64, side: usize) -> Arc<Self> {
         let latest = || LATEST.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, terrain)) = latest().as_ref().filter(|(latest, _)| *latest == seed) {
+        let few = Some(side).filter(|side| seed == USUAL.0 && *side <= FEW);
+        let fits =
+            |(of, made_for, _): &&(u64, Option<usize>, _)| *of == seed && (made_for.is_none() || *made_for == few);
+        if let Some((.., terrain)) = latest().as_ref().filter(fits) {
             return Arc::clone(terrain);
         }
         // Not under the lock: a thread that waits for rayon may be given a job that comes here too.
-        let terrain = Arc::new(Self::new(seed));
-        *latest() = Some((seed, Arc::clone(&terrain)));
+        let terrain = Arc::new(Self::new(seed, few));
+        *latest() = Some((seed, few, Arc::clone(&terrain)));
         terrain
     }
 
-    fn new(seed: u64) -> Self {
+    /// All of it, or of the usual seed what the samples of a side depend on.
+    fn new(seed: u64, few: Option<usize>) -> Self {
         let relief = Relief::new(seed);
-        let gullies = Noise::new(seed, 0);
+        let gullies = Gullies::new(Noise::new(seed, 0), 0.51 * EXTENT_M);
         // One control more on each side, for the slopes.
         let side = CONTROLS + 2;
         let place = |column: usize, row: usize| {
             let knots = Vec2::new(column as f32 - 2.0, 2.0 - row as f32);
             knots * (EXTENT_M / KNOTS as f32) + Vec2::new(-0.5, 0.5) * EXTENT_M
         };
-        let bare = (0..side * side).into_par_iter().map(|index| relief.at(place(index % side, index / side)));
-        let bare: Vec<Bare> = bare.collect();
+        let mut is_needed = vec![few.is_none(); CONTROLS];
+        for sample in 0..few.unwrap_or(0) {
+            let (first, weights) = taps(sample, few.unwrap_or(2));
+            is_needed[first..first + weights.len()].fill(true);
+        }
+        let has_needed = |at: usize| (at.saturating_sub(2)..=at.min(CONTROLS - 1)).any(|at| is_needed[at]);
+        let is_asked: Vec<bool> = (0..side).map(has_needed).collect();
+        let mut bare = vec![Bare::default(); side * side];
+        bare.par_chunks_mut(side).enumerate().filter(|(row, _)| is_asked[*row]).for_each_init(
+            || relief.clone(),
+            |relief, (row, line)| {
+                for (column, bare) in line.iter_mut().enumerate().filter(|(column, _)| is_asked[*column]) {
+                    *bare = relief.at(place(column, row));
+                }
+            },
+        );
         let knot_m = EXTENT_M / KNOTS as f32;
-        let controls_m = (0..CONTROLS * CONTROLS).into_par_iter().map(|index| {
-            let (column, row) = (index % CONTROLS + 1, index / CONTROLS + 1);
+        let control_m = |column: usize, row: usize| {
             let here = bare[row * side + column];
             let height_m = |column: usize, row: usize| bare[row * side + column].height_m;
             let (west_m, east_m) = (height_m(column - 1, row), height_m(column + 1, row));
             let (north_m, south_m) = (height_m(column, row - 1), height_m(column, row + 1));
             let slope = Vec2::new(east_m - west_m, north_m - south_m) / (2.0 * knot_m);
-            here.height_m + here.erodibility * erosion::eroded_m(gullies, place(column, row), slope)
+            here.height_m + here.erodibility * gullies.eroded_m(place(column, row), slope)
+        };
+        let mut controls_m = vec![0.0; CONTROLS * CONTROLS];
+        let rows = controls_m.par_chunks_mut(CONTROLS).enumerate();
+        rows.filter(|(row, _)| is_needed[*row]).for_each(|(row, line)| {
+            for (column, height_m) in line.iter_mut().enumerate().filter(|(column, _)| is_needed[*column]) {
+                *height_m = control_m(column + 1, row + 1);
+            }
         });
-        Self { controls_m: controls_m.collect() }
-    }
-
-    /// Bounds of the surface: a B-spline stays within its control values.
-    fn range_m(&self) -> (f32, f32) {
-        self.controls_m.iter().fold((f32::MAX, f32::MIN), |(low, high), &h| (low.min(h), high.max(h)))
+        let range_m = match few {
+            Some(_) => USUAL.1,
+            None => controls_m.iter().fold((f32::MAX, f32::MIN), |(low, high), &h| (low.min(h), high.max(h))),
+        };
+        Self { controls_m, range_m }
     }
 
     /// The surface at `side` x `side` places, at least two a side.
@@ -119,7 +153,7 @@ impl Terrain {
 
     /// Height of step 0 and between steps, metres.
     fn scale(&self) -> (f32, f32) {
-        let (low_m, high_m) = self.range_m();
+        let (low_m, high_m) = self.range_m;
         (low_m, (high_m - low_m) / f32::from(u16::MAX))
     }
 
@@ -171,11 +205,29 @@ mod tests {
 
     #[test]
     fn seeds_make_different_terrains_and_one_seed_the_same() {
-        let made_again = Terrain::new(1);
-        assert_eq!(made_again.controls_m, Terrain::of(1).controls_m);
-        assert_ne!(made_again.controls_m, Terrain::of(2).controls_m);
+        let made_again = Terrain::new(1, None);
+        let of = |seed: u64| Terrain::of(seed, CONTROLS);
+        assert_eq!(made_again.controls_m, of(1).controls_m);
+        assert_ne!(made_again.controls_m, of(2).controls_m);
         // Whatever was made last.
-        assert_eq!(made_again.controls_m, Terrain::of(1).controls_m);
+        assert_eq!(made_again.controls_m, of(1).controls_m);
+        assert_eq!(made_again.range_m, USUAL.1);
+    }
+
+    #[test]
+    fn few_samples_are_those_of_all_the_terrain() {
+        let whole = Terrain::new(USUAL.0, None);
+        for side in [2, 3, 9, 65, FEW] {
+            let few = Terrain::new(USUAL.0, Some(side));
+            let computed = few.controls_m.iter().filter(|&&height_m| height_m != 0.0).count();
+            assert!(computed <= 16 * side * side && computed < CONTROLS * CONTROLS, "{side}: {computed}");
+            let rows = |terrain: &Terrain| {
+                let mut values = vec![0; side * side];
+                terrain.rows(side, 0, &mut values);
+                values
+            };
+            assert_eq!((rows(&few), few.scale()), (rows(&whole), whole.scale()), "{side}");
+        }
     }
 
     #[test]

@@ -19,29 +19,65 @@ impl Noise {
         Vec2::new(bits as u32 as f32, (bits >> 32) as u32 as f32) * (2.0 / 4_294_967_296.0) - 1.0
     }
 
-    /// Gradient noise (Perlin, 2002) of wavelength 1, about -0.7 to 0.7.
-    pub(super) fn gradient(self, place: Vec2) -> f32 {
-        let floor = place.floor();
-        let (cell, inside) = (floor.as_ivec2(), place - floor);
-        let fade = inside * inside * inside * (inside * (inside * 6.0 - 15.0) + 10.0);
-        let corner = |x: i32, y: i32| {
-            let offset = inside - Vec2::new(x as f32, y as f32);
-            self.cell(cell + IVec2::new(x, y)).dot(offset)
-        };
-        let mixed = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        let north = mixed(corner(0, 0), corner(1, 0), fade.x);
-        let south = mixed(corner(0, 1), corner(1, 1), fade.x);
-        mixed(north, south, fade.y)
+    /// Octaves of halving wavelength and amplitude, the first of wavelength 1 and amplitude 1.
+    pub(super) fn fractal(self, octaves: u32) -> Fractal {
+        let layer = |octave| Self { seed: self.seed.wrapping_add(u64::from(octave)) }.gradient();
+        Fractal { layers: (0..octaves).map(layer).collect() }
     }
 
-    /// Octaves of halving wavelength and amplitude, the first of wavelength 1 and amplitude 1.
-    pub(super) fn fractal(self, place: Vec2, octaves: u32) -> f32 {
+    /// Gradient noise (Perlin, 2002) of wavelength 1, about -0.7 to 0.7.
+    pub(super) fn gradient(self) -> Gradient {
+        Gradient { noise: self, cell: None, corners: [Vec2::ZERO; 4] }
+    }
+}
+
+/// Gradient noise. It keeps the corners of the cell that it was last asked about, which the next place mostly lies in too.
+#[derive(Clone)]
+pub(super) struct Gradient {
+    noise: Noise,
+    cell: Option<IVec2>,
+    corners: [Vec2; 4],
+}
+
+impl Gradient {
+    pub(super) fn at(&mut self, place: Vec2) -> f32 {
+        let (cell, inside) = cell_and_inside(place);
+        if self.cell != Some(cell) {
+            self.cell = Some(cell);
+            self.corners = CORNERS.map(|corner| self.noise.cell(cell + corner));
+        }
+        let fade = inside * inside * inside * (inside * (inside * 6.0 - 15.0) + 10.0);
+        let corner = |at: usize| self.corners[at].dot(inside - CORNERS[at].as_vec2());
+        let mixed = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let (north, south) = (mixed(corner(0), corner(1), fade.x), mixed(corner(2), corner(3), fade.x));
+        mixed(north, south, fade.y)
+    }
+}
+
+const CORNERS: [IVec2; 4] = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE];
+
+/// The cell of the integer lattice in which a place lies, and where in it.
+pub(super) fn cell_and_inside(place: Vec2) -> (IVec2, Vec2) {
+    // Without calls: not every x86-64 rounds by an instruction.
+    let towards_zero = place.as_ivec2();
+    let above = towards_zero.as_vec2().cmpgt(place);
+    let cell = towards_zero - IVec2::new(i32::from(above.x), i32::from(above.y));
+    (cell, place - cell.as_vec2())
+}
+
+/// Octaves of gradient noise.
+#[derive(Clone)]
+pub(super) struct Fractal {
+    layers: Vec<Gradient>,
+}
+
+impl Fractal {
+    pub(super) fn at(&mut self, place: Vec2) -> f32 {
         let (mut sum, mut scale) = (0.0, 1.0);
-        for octave in 0..octaves {
+        for (octave, layer) in (0_u8..).zip(&mut self.layers) {
             // Layers are shifted, so that no lattice point is a zero of all of them.
-            let shift = Vec2::new(0.37, 0.71) * octave as f32;
-            let layer = Self { seed: self.seed.wrapping_add(u64::from(octave)) };
-            sum += layer.gradient(place * scale + shift) / scale;
+            let shift = Vec2::new(0.37, 0.71) * f32::from(octave);
+            sum += layer.at(place * scale + shift) / scale;
             scale *= 2.0;
         }
         sum

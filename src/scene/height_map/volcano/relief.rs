@@ -1,6 +1,6 @@
 //! The volcano before rain and rivers: cone, crater, collapse scar, side vents, debris and plain.
 
-use super::noise::Noise;
+use super::noise::{Fractal, Gradient, Noise};
 use glam::Vec2;
 
 /// Height of the plain, metres above the sea.
@@ -36,16 +36,18 @@ const VENTS: [Vent; 3] = [
 ];
 
 /// The noises of one seed, each for one thing.
+#[derive(Clone)]
 pub(super) struct Relief {
-    outline: [Noise; 2],
-    scar: [Noise; 2],
-    rock: Noise,
-    hummocks: Noise,
-    hills: Noise,
+    outline: [Fractal; 2],
+    scar: [Fractal; 2],
+    rock: Fractal,
+    /// Of two sizes.
+    hummocks: [Gradient; 2],
+    hills: Fractal,
 }
 
 /// The uneroded terrain at one place.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Bare {
     /// Height in metres.
     pub(super) height_m: f32,
@@ -58,29 +60,29 @@ impl Relief {
     pub(super) fn new(seed: u64) -> Self {
         let layer = |number| Noise::new(seed, number);
         Self {
-            outline: [layer(1), layer(2)],
-            scar: [layer(3), layer(4)],
-            rock: layer(5),
-            hummocks: layer(6),
-            hills: layer(7),
+            outline: [1, 2].map(|number| layer(number).fractal(2)),
+            scar: [3, 4].map(|number| layer(number).fractal(3)),
+            rock: layer(5).fractal(2),
+            hummocks: [layer(6).gradient(), layer(6).gradient()],
+            hills: layer(7).fractal(5),
         }
     }
 
     /// The terrain at `place`, metres east and north of the summit.
-    pub(super) fn at(&self, place: Vec2) -> Bare {
+    pub(super) fn at(&mut self, place: Vec2) -> Bare {
         // Nothing in nature is round: outlines are bent at the scale of ridges and ravines.
-        let bent = place + bend(&self.outline, place / 3_100.0, 2) * 560.0 * ramp(200.0, 2_800.0, place.length());
-        let torn = place + bend(&self.scar, place / 1_400.0, 3) * 280.0;
+        let bent = place + bend(&mut self.outline, place / 3_100.0) * 560.0 * ramp(200.0, 2_800.0, place.length());
+        let torn = place + bend(&mut self.scar, place / 1_400.0) * 280.0;
         let (terrain_m, crest) = scarred_m(torn, self.cone_m(bent));
         let fan = fan(bent) * (1.0 - ramp(200.0, 620.0, terrain_m));
         let low = 1.0 - ramp(60.0, 500.0, terrain_m);
-        let plain_m = low * 95.0 * self.hills.fractal(place / 3_400.0, 5);
+        let plain_m = low * 95.0 * self.hills.at(place / 3_400.0);
         let debris_m = if fan > 0.0 { fan * (30.0 + 75.0 * self.mounds(place)) } else { 0.0 };
         Bare { height_m: PLAIN_M + terrain_m + plain_m + debris_m, erodibility: (1.0 - 0.85 * fan) * (1.0 - crest) }
     }
 
     /// The cone with its crater and side vents, above the plain.
-    fn cone_m(&self, place: Vec2) -> f32 {
+    fn cone_m(&mut self, place: Vec2) -> f32 {
         let mut cone_m = flank_m(place.length());
         for vent in &VENTS {
             let distance = place.distance(vent.place) / vent.radius_m;
@@ -88,18 +90,18 @@ impl Relief {
             cone_m += vent.height_m * dome * dome * dome;
         }
         let inside = place.length() / CRATER_RADIUS_M;
-        let rim_m = flank_m(CRATER_RADIUS_M) + 60.0 * self.rock.fractal(place / 700.0, 2);
+        let rim_m = flank_m(CRATER_RADIUS_M) + 60.0 * self.rock.at(place / 700.0);
         let bowl_m = rim_m + CRATER_DEPTH_M * (inside * inside - 1.0);
         smooth_min(cone_m, bowl_m, 40.0)
     }
 
     /// Hummocks, 0 to about 1: rounded blocks of two sizes with gaps between them.
-    fn mounds(&self, place: Vec2) -> f32 {
-        let blocks = |wavelength_m: f32| {
-            let block = (self.hummocks.gradient(place / wavelength_m) + 0.05).max(0.0);
+    fn mounds(&mut self, place: Vec2) -> f32 {
+        let mut blocks = |size: usize, wavelength_m: f32| {
+            let block = (self.hummocks[size].at(place / wavelength_m) + 0.05).max(0.0);
             block * block * 4.0
         };
-        blocks(420.0) + 0.45 * blocks(190.0)
+        blocks(0, 420.0) + 0.45 * blocks(1, 190.0)
     }
 }
 
@@ -133,8 +135,8 @@ fn fan(place: Vec2) -> f32 {
 }
 
 /// A vector that wanders with the place.
-fn bend(noise: &[Noise; 2], place: Vec2, octaves: u32) -> Vec2 {
-    Vec2::from(noise.map(|noise| noise.fractal(place, octaves)))
+fn bend(noise: &mut [Fractal; 2], place: Vec2) -> Vec2 {
+    Vec2::from(noise.each_mut().map(|noise| noise.at(place)))
 }
 
 /// 0 below `low`, 1 above `high`, a smooth step between.
