@@ -40,7 +40,7 @@ pub(crate) struct QueryPool {
     values: Vec<u64>,
 }
 
-/// Queries that are reset at once when a frame wants more than any before it: a pool holds far more than most take.
+/// Queries that are reset at once when a frame wants more than any before it: a pool holds far more than most.
 const RESET_TOGETHER: u32 = 256;
 
 impl QueryPool {

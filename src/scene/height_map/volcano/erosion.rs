@@ -49,9 +49,9 @@ impl Gullies {
     /// Metres that erosion adds to the height at `place` (metres east and north), where the uneroded terrain has the
     /// gradient `slope` (metres a metre).
     ///
-    /// Each octave is a patchwork of waves whose crests point down the slope. A patch's wave is damped towards its edge,
-    /// and patches overlap, so that gullies begin, join and end. The slope that an octave sees includes the octaves before
-    /// it: small gullies run into the large ones.
+    /// Each octave is a patchwork of waves whose crests point down the slope. A patch's wave is damped towards its
+    /// edge, and patches overlap, so that gullies begin, join and end. The slope that an octave sees includes the
+    /// octaves before it: small gullies run into the large ones.
     pub(super) fn eroded_m(&self, place: Vec2, slope: Vec2) -> f32 {
         let (mut height_m, mut total_slope) = (0.0, slope);
         for patches in &self.octaves {

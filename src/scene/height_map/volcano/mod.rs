@@ -74,8 +74,8 @@ const USUAL: (u64, (f32, f32)) = (1, (500.061_83, 1_716.071_8));
 /// Sides of more samples than this depend on most control values.
 const FEW: usize = CONTROLS / 8;
 
-/// The terrain made last, its seed, and the side of the few samples that it was made for: whoever compares sizes samples one
-/// terrain many times.
+/// The terrain made last, its seed, and the side of the few samples that it was made for: whoever compares sizes
+/// samples one terrain many times.
 static LATEST: Mutex<Option<(u64, Option<usize>, Arc<Terrain>)>> = Mutex::new(None);
 
 impl Terrain {

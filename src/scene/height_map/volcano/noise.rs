@@ -31,7 +31,7 @@ impl Noise {
     }
 }
 
-/// Gradient noise. It keeps the corners of the cell that it was last asked about, which the next place mostly lies in too.
+/// Gradient noise. It keeps the corners of the cell that it was last asked about, in which the next place mostly lies.
 #[derive(Clone)]
 pub(super) struct Gradient {
     noise: Noise,
