@@ -76,7 +76,10 @@ const FEW: usize = CONTROLS / 8;
 
 /// The terrain made last, its seed, and the side of the few samples that it was made for: whoever compares sizes
 /// samples one terrain many times.
-static LATEST: Mutex<Option<(u64, Option<usize>, Arc<Terrain>)>> = Mutex::new(None);
+static LATEST: Mutex<Option<Latest>> = Mutex::new(None);
+
+/// Seed, samples a side where only theirs are there, and what was made of them.
+type Latest = (u64, Option<usize>, Arc<Terrain>);
 
 impl Terrain {
     /// The terrain of a seed, for samples of that side, from [`LATEST`] if it is there.
