@@ -467,7 +467,8 @@ impl Paper for Terrain {
         let unpacked =
             (wants_packed && self.corners == Some(Corners::Image)).then(|| packed::no_room(self.scene.height_maps()));
         let unread = (self.parameters.corners == Corners::Packed && self.corners == Some(Corners::Image)).then(|| {
-            "`corners` packed is of bilinear cells alone: rays over bicubic terrain read the image of the levels".to_owned()
+            "`corners` packed is of bilinear cells alone: rays over bicubic terrain read the image of the levels"
+                .to_owned()
         });
         voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(unpacked).chain(unread).collect()
     }

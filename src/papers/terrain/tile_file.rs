@@ -116,7 +116,8 @@ impl TileFile {
         let made = file::write_unsynced(&path, |out| make(out, name, interpolation, source, &mut wrong));
         wrong.map_or(Ok(()), Err)?;
         made.map_err(|error| {
-            let way_out = "or another cache by its variable (XDG_CACHE_HOME, LOCALAPPDATA under Windows), or `no-cache`";
+            let way_out =
+                "or another cache by its variable (XDG_CACHE_HOME, LOCALAPPDATA under Windows), or `no-cache`";
             Error::Input(format!("`map` {}: its tiles go to the user's cache: {error}, {way_out}", name.display()))
         })?;
         check_same(name, &state_before, &state()?).inspect_err(|_| {
