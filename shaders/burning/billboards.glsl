@@ -9,6 +9,7 @@ layout(set = 0, binding = 44, std140) uniform Billboards {
     uint layer_scale; // pixels of the picture along a side of a pixel of the fire's layer
     uvec2 last_pixel; // of the picture
     float fire_light; // factor of the light of the flames
+    uvec2 layer_size; // pixels of the fire's layer
 } billboards;
 
 // Distance along the view of a depth of the picture.

@@ -4,6 +4,10 @@
 
 #include "burning/fire-tiles.glsl"
 
+layout(push_constant, std430) uniform Laying {
+    uint picture; // number of the pictures so far
+} laying;
+
 layout(set = 0, binding = 114, std430) readonly buffer Tiles {
     uint tiles[]; // row by row, the picture that fire or smoke reached each in last
 };

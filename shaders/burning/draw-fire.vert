@@ -4,9 +4,6 @@
 
 #include "burning/square.glsl"
 
-// Beyond this a flame is dark, whatever its noise.
-const float WIDEST = 0.881;
-
 void main() {
     Particle p = particles[square_of_vertex()];
     vec2 corner = corner_of_vertex();

@@ -17,13 +17,16 @@ layout(set = 0, binding = 70, std430) buffer Contacts {
 };
 
 void main() {
-    uint thread = element(64u);
-    if (thread < MOST_PARTS * WORDS) {
-        contacts[thread] = thread % WORDS < DIRECTIONS ? -FARTHEST : FARTHEST;
-    }
-    if (thread < ENTRIES) {
-        for (uint layer = 0u; layer < LAYERS; layer++) {
-            balls[layer * ENTRIES + thread] = 0xffffffffu;
+    // By as many threads as there are: while nothing falls there are none but every fourth tick.
+    uint stride = 64u * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    for (uint i = element(64u); i < max(MOST_PARTS * WORDS, ENTRIES); i += stride) {
+        if (i < MOST_PARTS * WORDS) {
+            contacts[i] = i % WORDS < DIRECTIONS ? -FARTHEST : FARTHEST;
+        }
+        if (i < ENTRIES) {
+            for (uint layer = 0u; layer < LAYERS; layer++) {
+                balls[layer * ENTRIES + i] = 0xffffffffu;
+            }
         }
     }
 }

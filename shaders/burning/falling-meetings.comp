@@ -52,16 +52,17 @@ void main() {
     if (thread == 0u) {
         moving[0] = 0u;
     }
-    if (thread >= MOST_PARTS * MEETINGS) {
-        return;
-    }
-    uint part = thread / MEETINGS;
-    int vertex = contacts[part * WORDS + GAPS + MEETINGS + thread % MEETINGS];
-    if (vertex != FARTHEST) {
-        Meeting meeting = meeting_of(part, position_of(uint(vertex)));
-        Part other = parts[min(part_of[meeting.vertex], MOST_PARTS - 1u)];
-        vec3 center = turned(other.orientation, other.center) + other.offset;
-        vec3 velocity = other.velocity + cross(other.spin, position_of(meeting.vertex) - center);
-        met[thread] = Obstacle(meeting.toward, meeting.gap, velocity);
+    // By as many threads as there are, as in falling-clear.comp.
+    uint stride = 64u * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    for (uint i = thread; i < MOST_PARTS * MEETINGS; i += stride) {
+        uint part = i / MEETINGS;
+        int vertex = contacts[part * WORDS + GAPS + MEETINGS + i % MEETINGS];
+        if (vertex != FARTHEST) {
+            Meeting meeting = meeting_of(part, position_of(uint(vertex)));
+            Part other = parts[min(part_of[meeting.vertex], MOST_PARTS - 1u)];
+            vec3 center = turned(other.orientation, other.center) + other.offset;
+            vec3 velocity = other.velocity + cross(other.spin, position_of(meeting.vertex) - center);
+            met[i] = Obstacle(meeting.toward, meeting.gap, velocity);
+        }
     }
 }

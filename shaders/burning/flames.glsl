@@ -25,6 +25,8 @@ vec3 unit(uvec3 h) {
 
 // Half the square of a flame, times its height and the particle's radius.
 const vec2 FLAME_SIZE = vec2(0.75, 1.15);
+// Beyond this share of it to its sides a flame is dark, whatever its noise.
+const float WIDEST = 0.881;
 
 // A flame is tall, swells at once and tapers; `own` is a random number of its own.
 float flame_height(float age, float own) {

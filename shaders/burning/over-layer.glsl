@@ -5,38 +5,36 @@
 
 layout(set = 0, binding = 45) uniform texture2D mesh_depth;
 
-layout(set = 0, binding = 55) uniform texture2D fire_layer;
+layout(set = 0, binding = 55) uniform utexture2D fire_texels; // two halves of 16 bits each; the distance of the mesh
 
 float distance_at(ivec2 pixel) {
     return eye_distance(texelFetch(mesh_depth, pixel, 0).x);
 }
 
-// Premultiplied.
+// Adds a texel by how near it lies and how far apart what was before it.
+void add(inout vec4 sum, inout float weights, uvec4 texel, float near, float own) {
+    float apart = abs(uintBitsToFloat(texel.z) - own) / billboards.particle_radius;
+    float weight = near / (0.01 + apart);
+    sum += weight * vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y));
+    weights += weight;
+}
+
+// Premultiplied. One read a texel: reads are what it takes.
 vec4 fire_at(ivec2 pixel) {
     int scale = int(billboards.layer_scale);
     vec2 at = vec2(pixel - scale / 2) / float(scale);
-    ivec2 first = ivec2(floor(at));
-    vec2 t = at - vec2(first);
-    ivec2 last = ivec2(billboards.last_pixel) / scale;
-    vec4 brightest = vec4(0.0);
-    for (int i = 0; i < 4; i++) {
-        ivec2 texel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), last);
-        brightest = max(brightest, texelFetch(fire_layer, texel, 0));
-    }
-    // Where there is neither fire nor smoke, as in most of the picture, distances need not be told.
-    bool is_clear = brightest == vec4(0.0);
+    vec2 t = at - floor(at);
+    ivec2 last = ivec2(billboards.layer_size) - 1;
+    ivec2 low = ivec2(floor(at));
+    ivec2 high = min(low + 1, last);
+    low = clamp(low, ivec2(0), last);
     float own = distance_at(pixel);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
-    for (int i = 0; i < 4 && !is_clear; i++) {
-        ivec2 corner = ivec2(i & 1, i >> 1);
-        ivec2 texel = clamp(first + corner, ivec2(0), last);
-        vec2 near = mix(1.0 - t, t, vec2(corner));
-        float apart = abs(distance_at(layer_pixel(texel)) - own) / billboards.particle_radius;
-        float weight = near.x * near.y / (0.01 + apart);
-        sum += weight * texelFetch(fire_layer, texel, 0);
-        weights += weight;
-    }
+    add(sum, weights, texelFetch(fire_texels, low, 0), (1.0 - t.x) * (1.0 - t.y), own);
+    add(sum, weights, texelFetch(fire_texels, ivec2(high.x, low.y), 0), t.x * (1.0 - t.y), own);
+    add(sum, weights, texelFetch(fire_texels, ivec2(low.x, high.y), 0), (1.0 - t.x) * t.y, own);
+    add(sum, weights, texelFetch(fire_texels, high, 0), t.x * t.y, own);
     return sum / max(weights, 1.0e-6);
 }
 

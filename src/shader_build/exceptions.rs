@@ -10,6 +10,8 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/block-weights-random.comp", "atomics: vertices are counted by block"),
     ("burning/connection-pieces.comp", "an atomic: pieces are counted"),
     ("burning/connection.comp", "an atomic: removed triangles are counted"),
+    ("burning/draw-fire-lines-flames.comp", "atomics: particles are marked by line of tiles"),
+    ("burning/draw-fire-lines-sun.comp", "atomics: particles are marked by line of tiles"),
     ("burning/falling-contacts-heights.comp", "atomics: the lowest and the farthest vertex are found"),
     ("burning/falling-contacts-vertices.comp", "an atomic: the first of several vertices is found"),
     ("burning/falling-balls.comp", "an atomic: the first vertex of a cell is found"),

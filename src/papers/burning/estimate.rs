@@ -6,7 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-use super::{bending, chunks, connection, draw_fire, draw_ground, falling, flame_lights, parts, puddle, smoke_volume};
+use super::{bending, chunks, connection, draw_ground, falling, fire_layer, flame_lights, parts, puddle, smoke_volume};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -87,9 +87,9 @@ impl Parameters {
             + if_so(has_light, flame_lights::BYTES)
             + if_so(self.has_smoke_volume(), smoke_volume::BYTES);
         // Linear light, and the layer of fire and smoke.
-        let [columns, rows] = draw_fire::layer_size(self).map(f64::from);
         let of_light = if has_light { 8.0 * pixels } else { 0.0 };
-        let of_layer = if self.has_fire_layer() && particles > 0.0 { 8.0 * columns * rows } else { 0.0 };
+        let has_layer = self.has_fire_layer() && particles > 0.0;
+        let of_layer = if has_layer { fire_layer::bytes(self) } else { 0.0 };
         let of_block =
             2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + VECTOR + size_of::<Group>() as f64;
 

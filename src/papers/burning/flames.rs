@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::buffers::Buffers;
 use super::draw::Draw;
+use super::fire_layer;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::parts::Parts;
@@ -27,7 +28,8 @@ host_block! {
         layer_scale: u32,
         last_pixel: [u32; 2],
         fire_light: f32,
-        _pad: [f32; 3],
+        _pad: f32,
+        layer_size: [u32; 2],
     }
 }
 
@@ -178,6 +180,7 @@ fn billboards(parameters: &Parameters, camera: &Camera) -> BillboardsBlock {
         layer_scale: parameters.fire_scale,
         last_pixel: [parameters.width - 1, parameters.height - 1],
         fire_light: parameters.fire_light,
-        _pad: [0.0; 3],
+        _pad: 0.0,
+        layer_size: fire_layer::size(parameters),
     }
 }

@@ -33,6 +33,7 @@ mod draw_wire;
 mod estimate;
 pub mod experiments;
 mod falling;
+mod fire_layer;
 mod flame_lights;
 mod flames;
 mod framing;
@@ -70,7 +71,7 @@ use self::draw_fire::DrawFire;
 use self::draw_ground::{DrawGround, ash};
 use self::draw_puddle::DrawPuddle;
 use self::draw_wire::DrawWire;
-use self::falling::falling;
+use self::falling::Falling;
 use self::flame_lights::{FlameLights, fire_lights};
 use self::heat_boundary::heat_boundary;
 use self::internal_deformation::InternalDeformation;
@@ -126,7 +127,7 @@ pub struct Burning {
     block_rotation: PingPong<1>,
     parts: Option<Parts>,
     bending: Option<Bending>,
-    falling: Option<PingPong<6>>,
+    falling: Option<Falling>,
     puddle: Option<Puddle>,
     flames: Option<Flames>,
     vertex_mapping: VertexMapping,
@@ -182,7 +183,8 @@ impl Burning {
         let parts = has_parts.then(|| Parts::new(shaders, label, &mut buffers, &model)).transpose()?;
         let bending = parts.as_ref().map(|parts| Bending::new(shaders, label, parameters, &mut buffers, parts, &model));
         let bending = bending.transpose()?.flatten();
-        let falling = parts.as_ref().map(|parts| falling(shaders, label, &mut buffers, parts, &model)).transpose()?;
+        let falling =
+            parts.as_ref().map(|parts| Falling::new(shaders, label, &mut buffers, parts, &model)).transpose()?;
         let has_puddle = parameters.has_puddle(variant);
         let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers)).transpose()?;
         let draw_puddle =
@@ -303,7 +305,7 @@ impl Burning {
             if let (Some(parts), Some(falling)) = (&self.parts, &self.falling) {
                 parts.record(frame, self.ticks())?;
                 self.bending.as_ref().map_or(Ok(()), |bending| bending.record(frame, self.ticks()))?;
-                falling.record(frame, tick)?;
+                falling.record(frame, self.ticks())?;
             }
             if let Some(puddle) = &self.puddle {
                 puddle.record(frame, tick)?;

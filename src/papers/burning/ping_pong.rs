@@ -61,7 +61,15 @@ impl<const STEPS: usize> PingPong<STEPS> {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
-        self.passes[tick].iter().zip(self.work).try_for_each(|(pass, work)| {
+        self.record_as(frame, tick, self.work)
+    }
+
+    /// As [`PingPong::record`], by these threads.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn record_as(&self, frame: &mut Frame<'_>, tick: usize, work: [Work; STEPS]) -> Result<(), Error> {
+        self.passes[tick].iter().zip(work).try_for_each(|(pass, work)| {
             frame.compute(pass, |dispatch| {
                 match work {
                     Work::Elements(count) => dispatch.elements(count),

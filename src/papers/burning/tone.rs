@@ -30,12 +30,13 @@ impl ToneMapping {
         fire: Option<(&Flames, &DrawFire)>,
     ) -> Result<Self, Error> {
         let pass = |shader: &str| Pass::graphics("tone", "", "common/fullscreen.vert", shader);
+        let fire = fire.and_then(|(flames, draw_fire)| Some((flames, draw_fire.texels.as_ref()?)));
         let pass = match fire {
             None => pass("burning/tone-none.frag"),
-            Some((flames, draw_fire)) => pass("burning/tone-layer.frag")
+            Some((flames, texels)) => pass("burning/tone-layer.frag")
                 .with("billboards", &flames.billboards)
                 .with("mesh_depth", &draw.depth)
-                .with("fire_layer", &draw_fire.target),
+                .with("fire_texels", texels),
         };
         let pass = pass
             .constants::<ToneConstants>()

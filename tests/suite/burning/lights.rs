@@ -55,7 +55,18 @@ pub fn image(device: &Arc<Device>, fire: &Fire, name: &str) -> Vec<DVec4> {
     halves.chunks_exact(4).map(texel).collect()
 }
 
-fn on_device(fire: &Fire) -> Vec<FireLight> {
+/// A particle of the device as the oracle's.
+pub fn particle(p: &DeviceParticle) -> Particle {
+    Particle {
+        position: p.position.as_dvec3(),
+        age: p.age_ticks as u32,
+        life: p.life_ticks as u32,
+        block: p.block as usize,
+        own: p.random.map(f64::from),
+    }
+}
+
+pub fn on_device(fire: &Fire) -> Vec<FireLight> {
     let lights: Vec<FireLight> = fire.read(fire.paper.fire_lights().unwrap());
     lights[..lights[0].count as usize].to_vec()
 }
@@ -67,14 +78,7 @@ fn the_flames_light_as_brightly_as_they_show() {
         for variant in [Variant::Shell, Variant::Melting] {
             let fire = first_picture(device, variant, &parameters, &ball());
             let particles: Vec<DeviceParticle> = fire.read(&fire.paper.flames().unwrap().particles);
-            let of_device = |p: &DeviceParticle| Particle {
-                position: p.position.as_dvec3(),
-                age: p.age_ticks as u32,
-                life: p.life_ticks as u32,
-                block: p.block as usize,
-                own: p.random.map(f64::from),
-            };
-            let flames: Vec<Particle> = particles[..parameters.fire as usize].iter().map(of_device).collect();
+            let flames: Vec<Particle> = particles[..parameters.fire as usize].iter().map(particle).collect();
             let ours = lights(&flames, parameters.particle_radius.into(), parameters.fire_light.into());
             let theirs = on_device(&fire);
             assert!(ours.len() > 8 && ours.len() == theirs.len(), "{} lights, not {}", theirs.len(), ours.len());

@@ -4,6 +4,7 @@ mod bending;
 mod dump;
 mod falling;
 mod fire;
+mod fire_layer;
 mod flames;
 mod flames_oracle;
 mod laws;

@@ -6,7 +6,7 @@ use super::super::LIGHT_CELLS;
 use super::flames::Particle;
 
 /// Half the square of a flame, over its height and the particle's radius.
-const HALF_SQUARE: DVec2 = DVec2::new(0.75, 1.15);
+pub(super) const HALF_SQUARE: DVec2 = DVec2::new(0.75, 1.15);
 
 /// A light.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +55,7 @@ pub fn ember(place: DVec3, left: f64, time_s: f64) -> f64 {
 }
 
 /// Light of a place of a flame's square, -1 to 1.
-fn flame(at: DVec2, age: f64, own: f64) -> DVec3 {
+pub(super) fn flame(at: DVec2, age: f64, own: f64) -> DVec3 {
     let tip = (1.0 + at.y) / 2.0;
     let turbulence = noise(DVec2::new(2.2 * at.x + 61.0 * own, 1.5 * at.y - 3.0 * age + 61.0 * own));
     let edge = DVec2::new(at.x * (1.0 + 0.9 * tip), at.y).length() + (turbulence - 0.35) * (0.35 + 0.6 * tip);

@@ -9,6 +9,7 @@ mod blocks;
 pub mod boundary;
 pub mod displacement;
 pub mod falling;
+pub mod fire_layer;
 #[cfg(test)]
 mod fixtures;
 pub mod flames;
