@@ -19,13 +19,13 @@ layout(set = 0, binding = 14, std430) buffer Attenuations {
 };
 
 void main() {
+    read_counts();
+    read_volumes();
+    read_lights();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     if (!is_in_band(pixel)) {
         return;
     }
-    read_counts();
-    read_volumes();
-    read_lights();
     uint list = list_of(pixel);
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     if (!is_due(LIGHT_ATTENUATION, list)) {

@@ -22,13 +22,22 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint volume_scale; // of every so many columns and rows a pixel's gas is marched before the others' is
 } counts;
 
-// Read once a thread: a processor that does many threads in step reads a storage buffer thread by thread.
+// Read once a thread, before any condition: a processor that does many threads in step reads a storage buffer thread by thread
+// once some of them may be idle.
 uint octaves = 0u;
 uint cache_size = 0u;
 uint brick_count = 0u;
+uint sample_count = 0u;
+uint jitter_kind = 0u;
+uint lattice_scale = 1u;
+uint attenuation_count = 0u;
 
 void read_counts() {
     octaves = counts.octaves;
     cache_size = counts.cache;
     brick_count = counts.bricks;
+    sample_count = counts.samples;
+    jitter_kind = counts.jitter;
+    lattice_scale = counts.volume_scale;
+    attenuation_count = counts.attenuations;
 }

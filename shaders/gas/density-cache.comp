@@ -27,13 +27,13 @@ layout(push_constant, std430) uniform Table {
 const float REACH = 3.9;
 
 void main() {
-    uint n = counts.cache;
+    read_counts();
+    take_volume(table.volume);
+    uint n = cache_size;
     uvec3 entry = gl_GlobalInvocationID;
     if (entry.x >= n || entry.y >= n || entry.z >= n) {
         return;
     }
-    read_counts();
-    take_volume(table.volume);
     vec3 q = 2.0 * vec3(entry) / float(n - 1u) - 1.0;
     vec3 point = in_hand.center + q * in_hand.half_extent_m;
     float density = 0.0;

@@ -16,8 +16,9 @@ struct Facet {
 Facet facet_of(uint triangle) {
     Facet facet;
     facet.triangle = triangle;
-    facet.corner = triangles[triangle].vertices;
-    facet.object = triangles[triangle].object;
+    Triangle corners = triangle_at(triangle);
+    facet.corner = corners.vertices;
+    facet.object = corners.object;
     facet.offset = objects[facet.object].offset_m;
     facet.eye = frame.eye - facet.offset;
     facet.p0 = vertices[facet.corner.x].position;

@@ -107,7 +107,7 @@ uint left_of(vec2 low, vec2 high) {
 
 void cut_by_edge(inout Piece piece, vec2 a, vec2 b, bool is_positive) {
     if (a == b) {
-        return; // the fourth edge of a triangle
+        return; // an edge of no length
     }
     bool forwards = a.x < b.x || (a.x == b.x && a.y < b.y);
     vec2 low = forwards ? a : b;
@@ -188,6 +188,14 @@ Fragment shaded(Facet facet, vec2 at, float depth, uint mask, float coverage, ve
     return fragment;
 }
 
+// Those of a polygon from one of its edges on.
+struct Corners {
+    vec2 from;
+    vec2 to;
+    vec2 next;
+    vec2 last;
+};
+
 // What a triangle whose polygon has these corners leaves in a pixel.
 Fragment fragment_of(Facet facet, vec4 ab, vec4 cd, vec2 origin) {
     bool is_positive = signed_area(ab, cd) >= 0.0;
@@ -196,10 +204,18 @@ Fragment fragment_of(Facet facet, vec4 ab, vec4 cd, vec2 origin) {
     vec2 c = cd.xy - origin;
     vec2 d = cd.zw - origin;
     Piece piece = WHOLE;
-    cut_by_edge(piece, a, b, is_positive);
-    cut_by_edge(piece, b, c, is_positive);
-    cut_by_edge(piece, c, d, is_positive);
-    cut_by_edge(piece, d, a, is_positive);
+    // Edge by edge in a loop: few triangles have four, and a processor that does many pixels in step does what stands under a
+    // condition also for none.
+    uint count = c == d ? 3u : 4u;
+    vec2 third = c == d ? a : d;
+    Corners corners = Corners(a, b, c, third);
+    uint i = 0u;
+    do {
+        cut_by_edge(piece, corners.from, corners.to, is_positive);
+        corners = Corners(corners.to, corners.next, corners.last, a);
+        i++;
+    } while (i < count);
+    is_cut = is_cut || i < count;
     vec4 inside = piece.corners_inside;
     bool is_full = min(min(inside.x, inside.y), min(inside.z, inside.w)) > 0.0;
     if (inside.x >= 0.0) {
@@ -214,12 +230,17 @@ Fragment fragment_of(Facet facet, vec4 ab, vec4 cd, vec2 origin) {
     if (inside.w >= 0.0) {
         add_corner(piece, facet, origin, vec2(1.0, 1.0));
     }
-    if (!is_full) {
-        add_edge(piece, facet, origin, a, b);
-        add_edge(piece, facet, origin, b, c);
-        add_edge(piece, facet, origin, c, d);
-        add_edge(piece, facet, origin, d, a);
-    }
+    count = is_full ? 0u : count;
+    corners = Corners(a, b, c, third);
+    i = 0u;
+    do {
+        if (i < count) {
+            add_edge(piece, facet, origin, corners.from, corners.to);
+        }
+        corners = Corners(corners.to, corners.next, corners.last, a);
+        i++;
+    } while (i < count);
+    is_cut = is_cut || i < count;
     float coverage = is_full ? 1.0 : clamp(is_positive ? piece.area : -piece.area, 0.0, 1.0);
     vec2 center = piece.center / max(piece.corner_count, 1.0);
     Fragment fragment = shaded(facet, origin + center, depth_at(facet, origin + center), piece.mask, coverage,

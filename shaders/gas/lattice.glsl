@@ -1,5 +1,5 @@
 // Gas at a lower resolution (ours): that of a lattice of pixels is marched first, whose columns and rows are
-// `counts.volume_scale` apart. A section of any other pixel is then the mean of those of the lattice around it that lie between the
+// `lattice_scale` apart. A section of any other pixel is then the mean of those of the lattice around it that lie between the
 // same surfaces, each as long as its own; where they do not, it is marched.
 
 // Of their depths together, what two sections share at least.
@@ -7,9 +7,15 @@ const float LEAST_SHARED = 0.5;
 // Weights of the lattice's sections together, at least.
 const float LEAST_WEIGHT = 0.5;
 
+// The pixel of the lattice at or before another one, along both axes. In floats, which hold a picture's columns and rows: whole
+// numbers are divided thread by thread.
+uvec2 lattice_before(uvec2 pixel) {
+    float scale = float(lattice_scale);
+    return uvec2(floor((vec2(pixel) + 0.5) / scale) * scale);
+}
+
 bool is_on_lattice(uvec2 pixel) {
-    uvec2 within = pixel % uvec2(counts.volume_scale);
-    return (within.x | within.y) == 0u;
+    return pixel == lattice_before(pixel);
 }
 
 // This dispatch is the pixel's: the lattice has the first ones.
@@ -24,28 +30,30 @@ vec4 lent(uvec2 corner, uint number, vec2 extent, float weight, inout float weig
     if (!is_there) {
         return vec4(0.0);
     }
-    Pixel pixel = pixels[list_of(corner)];
+    Pixel pixel = pixel_of_words(pixels[list_of(corner)]);
     if (number >= pixel.section_count) {
         return vec4(0.0);
     }
-    Section section = sections[pixel.first_section + number];
-    float shared_m = min(section.far_m, extent.y) - max(section.near_m, extent.x);
-    float whole_m = max(section.far_m, extent.y) - min(section.near_m, extent.x);
+    uint slot = pixel.first_section + number;
+    vec2 other = uintBitsToFloat(sections[2u * slot].xy);
+    vec4 light = uintBitsToFloat(sections[2u * slot + 1u]);
+    float shared_m = min(other.y, extent.y) - max(other.x, extent.x);
+    float whole_m = max(other.y, extent.y) - min(other.x, extent.x);
     if (shared_m < LEAST_SHARED * whole_m) {
         return vec4(0.0);
     }
     weights += weight;
-    float ratio = (extent.y - extent.x) / (section.far_m - section.near_m);
-    float passed = section.transparency < 1.0 ? pow(max(section.transparency, 1.0e-37), ratio) : 1.0;
-    float share = section.transparency < 0.999 ? (1.0 - passed) / (1.0 - section.transparency) : ratio;
-    return vec4(section.color * share, passed) * weight;
+    float ratio = (extent.y - extent.x) / (other.y - other.x);
+    float passed = light.w < 1.0 ? pow(max(light.w, 1.0e-37), ratio) : 1.0;
+    float share = light.w < 0.999 ? (1.0 - passed) / (1.0 - light.w) : ratio;
+    return vec4(light.xyz * share, passed) * weight;
 }
 
 // A section of a pixel that is not of the lattice: done, unless it must be marched.
 Gas taken(uvec2 pixel, uint number, vec2 extent) {
-    uvec2 low = pixel - pixel % uvec2(counts.volume_scale);
-    uvec2 high = low + uvec2(counts.volume_scale);
-    vec2 t = vec2(pixel - low) / float(counts.volume_scale);
+    uvec2 low = lattice_before(pixel);
+    uvec2 high = low + uvec2(lattice_scale);
+    vec2 t = vec2(pixel - low) / float(lattice_scale);
     float weights = 0.0;
     vec4 sum = lent(low, number, extent, (1.0 - t.x) * (1.0 - t.y), weights);
     sum += lent(uvec2(high.x, low.y), number, extent, t.x * (1.0 - t.y), weights);

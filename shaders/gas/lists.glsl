@@ -51,6 +51,10 @@ uvec2 color_words(Color color) {
     return uvec2(color.red_green, color.blue_opacity);
 }
 
+Pixel pixel_of_words(uvec4 words) {
+    return Pixel(words.x, words.y, uintBitsToFloat(words.z), words.w);
+}
+
 Link link_of(uvec4 words) {
     return Link(words.x, words.y, uintBitsToFloat(words.z), uintBitsToFloat(words.w));
 }

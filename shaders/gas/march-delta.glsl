@@ -7,6 +7,8 @@
 
 #include "gas/random.glsl"
 
+void take_pixel(uvec2 pixel, uint pixel_index) {}
+
 void read_scene() {
     read_counts();
     read_volumes();
@@ -104,7 +106,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
             gas.color = mix(gas.color, color, part);
             gas.transparency = mix(gas.transparency, transparency, part);
             gas.evaluations += evaluations;
-            gas.is_done = gas.increments >= counts.samples;
+            gas.is_done = gas.increments >= sample_count;
         }
     } while (!gas.is_done && !is_cut && made < MOST_MADE);
     return gas;

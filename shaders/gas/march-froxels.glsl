@@ -7,6 +7,8 @@
 
 layout(set = 0, binding = 34) uniform texture3D froxel_sums;
 
+void take_pixel(uvec2 pixel, uint pixel_index) {}
+
 void read_scene() {
     read_counts();
     read_volumes();

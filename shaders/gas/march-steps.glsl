@@ -30,13 +30,12 @@ float place_of_ray = -1.0; // of all its samples, where there is one
 
 // By the mask all samples of a ray lie at one place of their parts, which goes on by the golden ratio from frame to frame:
 // errors then depend on it alone, and differ from pixel to pixel as the mask does.
-void take_pixel(uint pixel_index) {
+void take_pixel(uvec2 pixel, uint pixel_index) {
     pixel_key = pixel_index * 0x9e3779b9u;
     frame_key = scramble(frame.noise_seed + uint(frame.number));
-    if (counts.jitter == BLUE_NOISE) {
-        uint row = pixel_index / frame.size.x;
-        uint column = (pixel_index - row * frame.size.x) % MASK_SIDE;
-        uint h = (ranks[row % MASK_SIDE * MASK_SIDE + column] << 20u) + 0x80000u;
+    if (jitter_kind == BLUE_NOISE) {
+        uvec2 texel = pixel % uvec2(MASK_SIDE);
+        uint h = (ranks[texel.y * MASK_SIDE + texel.x] << 20u) + 0x80000u;
         h += uint(frame.number) * 0x9e3779b9u;
         place_of_ray = float(h >> 8u) / 16777216.0;
     }
@@ -62,7 +61,6 @@ bool ends_at(float transparency) {
 // One section of a pixel, from the increments on that `begun` has; the samples before it are counted so that every
 // increment has its own random number.
 Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number, Gas begun) {
-    take_pixel(pixel_index);
     float scale = length(ray);
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -84,7 +82,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         }
     }
     is_cut = is_cut || v < volume_count;
-    step_m /= float(counts.samples);
+    step_m /= float(sample_count);
     float early = has_solid ? max(frame.early_end, 1.0 - SOLID_OPACITY) : frame.early_end;
     float length_m = (extent.y - extent.x) * scale;
     Gas gas = begun;

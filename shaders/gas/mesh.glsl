@@ -7,6 +7,7 @@ struct Vertex {
     vec3 normal; // unit
 };
 
+// Of its vertices and its object; read as one vector, as links are.
 struct Triangle {
     uvec3 vertices;
     uint object;
@@ -17,8 +18,13 @@ layout(set = 0, binding = 4, std430) readonly buffer Vertices {
 };
 
 layout(set = 0, binding = 5, std430) readonly buffer Triangles {
-    Triangle triangles[];
+    uvec4 triangles[]; // each a Triangle
 };
+
+Triangle triangle_at(uint triangle) {
+    uvec4 words = triangles[triangle];
+    return Triangle(words.xyz, words.w);
+}
 
 layout(set = 0, binding = 6, std430) readonly buffer Objects {
     Object objects[];

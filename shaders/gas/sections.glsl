@@ -13,11 +13,11 @@ layout(set = 0, binding = 8, std430) buffer Links {
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
-    Pixel pixels[];
+    uvec4 pixels[]; // each a Pixel
 };
 
 layout(set = 0, binding = 13, std430) buffer Sections {
-    Section sections[];
+    uvec4 sections[]; // each two of a Section
 };
 
 #include "gas/lattice.glsl"
@@ -26,25 +26,26 @@ void set_next(uint list, uint node, uint next) {
     if (node == NONE) {
         heads[list] = next;
     } else if (is_section(node)) {
-        sections[node & ~SECTION].next = next;
+        sections[2u * (node & ~SECTION)].w = next;
     } else {
         links[node].x = next;
     }
 }
 
 void main() {
+    read_scene();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     if (!is_in_band(pixel)) {
         return;
     }
-    read_scene();
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     uint list = list_of(pixel);
-    Pixel reserved = pixels[list];
+    Pixel reserved = pixel_of_words(pixels[list]);
     if (reserved.section_count == 0u || !is_turn_of(pixel) || !is_due(VOLUME, list)) {
         return;
     }
     bool is_lent = !is_on_lattice(pixel);
+    take_pixel(pixel, pixel_index);
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     float end = reserved.end_m;
     vec2 segments[MAX_VOLUMES];
@@ -76,8 +77,8 @@ void main() {
         transparency = uintBitsToFloat(before.b.y);
         evaluations = reserved.evaluations;
         if (before.b.z > 0u) {
-            Section section = sections[reserved.first_section + used];
-            begun = Gas(section.color, section.transparency, before.b.z, 0u, false);
+            vec4 light = uintBitsToFloat(sections[2u * (reserved.first_section + used) + 1u]);
+            begun = Gas(light.xyz, light.w, before.b.z, 0u, false);
         }
     }
     bool is_done = depth >= end || used >= reserved.section_count;
@@ -124,7 +125,9 @@ void main() {
                 }
                 evaluations += gas.evaluations;
                 uint slot = reserved.first_section + used;
-                sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
+                vec3 place = vec3(depth, next, float(gas.increments));
+                sections[2u * slot] = uvec4(floatBitsToUint(place), fragment);
+                sections[2u * slot + 1u] = floatBitsToUint(vec4(gas.color, gas.transparency));
                 is_stopped = !gas.is_done;
                 if (is_stopped) {
                     begun = gas;
@@ -144,10 +147,8 @@ void main() {
             }
         }
     } while (!is_done && !is_stopped);
-    pixels[list].evaluations = evaluations;
-    if (is_done) {
-        pixels[list].section_count = used;
-    }
+    uint made_sections = is_done ? used : reserved.section_count;
+    pixels[list] = uvec4(reserved.first_section, made_sections, floatBitsToUint(end), evaluations);
     uvec4 place = uvec4(floatBitsToUint(depth), fragment, previous, used);
     State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, 0u), uvec3(0u));
     leave(VOLUME, list, is_done, before, state);

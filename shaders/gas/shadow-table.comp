@@ -5,7 +5,7 @@
 // round the point, and their densities times the distance to it, are interpolated. They must be finished before: the
 // text sorts the entries by their distance from the light, which reads unfinished ones where a farther entry lies on a
 // nearer ray. Here a dispatch does all entries of one Manhattan distance, counted in entries from the cell that holds
-// the light, along those axes alone that are the longest of some entry's ray: the four are nearer by it always. They
+// the light, along each axis from where on it is the longest of some entry's ray: the four are nearer by it always. They
 // are whole planes where one axis is the longest of all rays, as under every light at infinity. The eight entries of the light's cell see it
 // before the face and are integrated directly. What lies outside the table has no density. The text lists six of the cube's eight corners, and
 // stores sums of densities that it multiplies by one step later; ours are times their own steps, which differ with the
@@ -16,11 +16,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 
 layout(set = 0, binding = 15, std430) readonly buffer DensityTables {
-    float density_tables[];
+    vec2 density_tables[]; // of an entry, and of the one after it in x
 };
 
 layout(set = 0, binding = 16, std430) buffer ShadowTables {
-    float shadow_tables[]; // a table a volume and light
+    vec2 shadow_tables[]; // a table a volume and light: of an entry, and of the one after it in x
 };
 
 layout(push_constant, std430) uniform Wave {
@@ -31,7 +31,7 @@ layout(push_constant, std430) uniform Wave {
     ivec3 cell; // the light's; -1 or the last entry where it lies outside
     uint first_density; // entry of the volume's densities
     ivec2 first_column; // of entries that this wave may have, along the threads' axes
-    ivec2 is_counted; // 1 where the distance is counted along the threads' axes, else 0
+    ivec2 free; // distances along the threads' axes that are not counted
     ivec3 column_axis; // of the threads' columns, a unit vector
     uint first_sum; // entry of the volume's and light's sums
     ivec3 row_axis; // and of their rows
@@ -51,8 +51,8 @@ uint index_of(ivec3 entry) {
     return uint((entry.z * n + entry.y) * n + entry.x);
 }
 
-// Sum at an entry plus its density over the step to it.
-float sum_through(ivec3 entry, float step_m) {
+// Of an entry and of the one after it in x, the sums plus the densities over the step to them.
+vec2 sums_through(ivec3 entry, float step_m) {
     uint at = index_of(entry);
     return shadow_tables[wave.first_sum + at] + density_tables[wave.first_density + at] * step_m;
 }
@@ -70,7 +70,7 @@ float sum_to_light(ivec3 entry) {
     float largest = max(size.x, max(size.y, size.z));
     float distance_m = length(to_light * wave.spacing_m);
     if (wave.is_point != 0u && largest <= 1.0) {
-        return density_tables[wave.first_density + index_of(entry)] * distance_m;
+        return density_tables[wave.first_density + index_of(entry)].x * distance_m;
     }
     if (largest <= 0.0) {
         return 0.0;
@@ -90,18 +90,30 @@ float sum_to_light(ivec3 entry) {
     ivec3 base_b = clamp(base + b * signs, ivec3(0), last);
     ivec3 base_c = clamp(base + c * signs, ivec3(0), last);
     ivec3 base_bc = clamp(base + (b + c) * signs, ivec3(0), last);
-    // What is not needed is not read: it may be unfinished.
-    float s0 = sum_through(base, step_m);
-    float sb = fraction_b > 0.0 ? sum_through(base_b, step_m) : s0;
-    float sc = fraction_c > 0.0 ? sum_through(base_c, step_m) : s0;
-    float sbc = s0;
-    if (fraction_b > 0.0 && fraction_c > 0.0) {
-        sbc = sum_through(base_bc, step_m);
-    } else if (fraction_b > 0.0) {
-        sbc = sb;
-    } else if (fraction_c > 0.0) {
-        sbc = sc;
+    // Two that are beside each other in x are read at once. What is not needed, and may be unfinished, is read and left.
+    bool is_along_x = a.x != 0;
+    bool is_b_x = b.x != 0;
+    int first_x = is_along_x ? base.x : min(base.x, is_b_x ? base_b.x : base_c.x);
+    bool is_turned = !is_along_x && first_x != base.x;
+    bool is_beside = !is_along_x && (is_b_x ? base_b.x : base_c.x) != base.x;
+    ivec3 across = is_b_x ? base_c : base_b; // along the axis of the face that is not x, or one of the two
+    vec2 near = sums_through(ivec3(first_x, base.yz), step_m);
+    vec2 far = sums_through(ivec3(first_x, across.yz), step_m);
+    float s0 = is_turned ? near.y : near.x;
+    float s_across = is_turned ? far.y : far.x;
+    float s_x = is_beside ? (is_turned ? near.x : near.y) : s0;
+    float s_both = is_beside ? (is_turned ? far.x : far.y) : s_across;
+    float sb = is_b_x ? s_x : s_across;
+    float sc = is_b_x ? s_across : s_x;
+    if (is_along_x) {
+        sc = sums_through(base_c, step_m).x;
+        s_both = sums_through(base_bc, step_m).x;
     }
+    bool has_b = fraction_b > 0.0;
+    bool has_c = fraction_c > 0.0;
+    float sbc = has_b && has_c ? s_both : (has_b ? sb : s0);
+    sb = has_b ? sb : s0;
+    sc = has_c ? sc : s0;
     return mix(mix(s0, sb, fraction_b), mix(sc, sbc, fraction_b), fraction_c);
 }
 
@@ -113,25 +125,30 @@ void main() {
     }
     ivec3 swept_axis = ivec3(1) - wave.column_axis - wave.row_axis;
     ivec3 column = wave.column_axis * at.x + wave.row_axis * at.y;
-    ivec2 distances = ivec2(distance_along(at.x, component(wave.cell, wave.column_axis)),
-        distance_along(at.y, component(wave.cell, wave.row_axis))) * wave.is_counted;
+    ivec2 distances = max(ivec2(distance_along(at.x, component(wave.cell, wave.column_axis)),
+        distance_along(at.y, component(wave.cell, wave.row_axis))) - wave.free, ivec2(0));
     int along = wave.distance - distances.x - distances.y;
     if (along < 0) {
         return;
     }
     // Along the third axis two entries have the distance, one on each side of the light's cell, or one where it lies outside.
     int cell = component(wave.cell, swept_axis);
-    int before = cell - along;
-    int behind = cell + 1 + along;
-    bool has_behind = behind < n;
-    int place = before >= 0 ? before : behind;
-    bool is_left = before >= 0 || has_behind;
+    int nearer = cell - along;
+    int beyond = cell + 1 + along;
+    bool has_beyond = beyond < n;
+    int place = nearer >= 0 ? nearer : beyond;
+    bool is_left = nearer >= 0 || has_beyond;
     do {
         if (is_left) {
             ivec3 entry = column + swept_axis * place;
-            shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
+            float sum = sum_to_light(entry);
+            uint to = wave.first_sum + index_of(entry);
+            shadow_tables[to].x = sum;
+            // Of the last one of a row the first stands for the one after it, which none asks for.
+            uint before = entry.x > 0 ? to - 1u : to + uint(n - 1);
+            shadow_tables[before].y = sum;
         }
-        is_left = is_left && has_behind && place != behind;
-        place = behind;
+        is_left = is_left && has_beyond && place != beyond;
+        place = beyond;
     } while (is_left);
 }

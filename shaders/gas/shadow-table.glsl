@@ -2,7 +2,7 @@
 // the table is read where the light's ray enters it.
 
 layout(set = 0, binding = 16, std430) readonly buffer ShadowTables {
-    float shadow_tables[]; // a table a volume and light
+    vec2 shadow_tables[]; // a table a volume and light: of an entry, and of the one after it in x
 };
 
 float table_value(uint l, vec3 point) {
@@ -13,11 +13,12 @@ float table_value(uint l, vec3 point) {
     vec3 t = position - vec3(low);
     uint first = (index_in_hand * light_count + l) * n * n * n + (low.z * n + low.y) * n + low.x;
     uint up = first + n * n;
-    float s00 = mix(shadow_tables[first], shadow_tables[first + 1u], t.x);
-    float s10 = mix(shadow_tables[first + n], shadow_tables[first + n + 1u], t.x);
-    float s01 = mix(shadow_tables[up], shadow_tables[up + 1u], t.x);
-    float s11 = mix(shadow_tables[up + n], shadow_tables[up + n + 1u], t.x);
-    return mix(mix(s00, s10, t.y), mix(s01, s11, t.y), t.z);
+    vec2 s00 = shadow_tables[first];
+    vec2 s10 = shadow_tables[first + n];
+    vec2 s01 = shadow_tables[up];
+    vec2 s11 = shadow_tables[up + n];
+    vec4 sides = mix(vec4(s00.x, s10.x, s01.x, s11.x), vec4(s00.y, s10.y, s01.y, s11.y), t.x);
+    return mix(mix(sides.x, sides.y, t.y), mix(sides.z, sides.w, t.y), t.z);
 }
 
 float optical_depth_to(uint l, vec3 point) {

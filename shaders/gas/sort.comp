@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants COUNT=one,several
+
 // Each pixel's list by mean depth ("average z value"), then object, then triangle: runs of up to eight in registers, which are
 // merged, for any length. The extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments
 // cover the pixel. The sections that `volume` will make are counted and their slots reserved, so that `volume` needs no
@@ -11,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
-#include "gas/volumes-several.glsl"
+#include "gas/volumes-{COUNT}.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 
@@ -33,7 +35,7 @@ layout(set = 0, binding = 10, std430) readonly buffer Colors {
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
-    Pixel pixels[];
+    uvec4 pixels[]; // each a Pixel
 };
 
 float mean_depth_of(uvec4 link) {
@@ -186,11 +188,11 @@ const uint COVERING = 1u; // the end of the tracing is looked for
 const uint COUNTING = 2u; // of the sections
 
 void main() {
+    read_volumes();
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     if (!is_in_band(pixel)) {
         return;
     }
-    read_volumes();
     uint at = list_of(pixel);
     if (!is_due(SORT, at)) {
         return;
@@ -329,7 +331,7 @@ void main() {
             wanted = 0u; // counted: the host grows the buffers and repeats the run
         }
     }
-    pixels[at] = Pixel(first, wanted, end, 0u);
+    pixels[at] = uvec4(first, wanted, floatBitsToUint(end), 0u);
 
     State state = State(uvec4(f, covered, floatBitsToUint(end), cuts), uvec4(0u), uvec3(phase, 0u, 0u));
     if (phase == MERGING) {

@@ -13,15 +13,13 @@ TileRange tile_range(Footprint seen) {
     return range;
 }
 
-// Their number `at`, row by row, as a place of pixels from the first one's corner.
-vec2 place_of(TileRange range, uint at) {
-    uint row = at / range.size.x;
-    return vec2(at - row * range.size.x, row) * float(TILE);
+uint tile_of(TileRange range, uvec2 at) {
+    return (range.first.y + at.y) * tiles_across() + range.first.x + at.x;
 }
 
-uint tile_of(TileRange range, uint at) {
-    uint row = at / range.size.x;
-    return (range.first.y + row) * tiles_across() + range.first.x + at - row * range.size.x;
+// The tile after another one, row by row: whole numbers are divided thread by thread.
+uvec2 after(TileRange range, uvec2 at) {
+    return at.x + 1u < range.size.x ? uvec2(at.x + 1u, at.y) : uvec2(0u, at.y + 1u);
 }
 
 // Its edges from the corner of the first tile.

@@ -18,13 +18,15 @@ void main() {
     TileRange range = tile_range(seen);
     Edges edges = edges_in(range, seen);
     uint count = range.size.x * range.size.y;
-    uint at = 0u;
-    for (; at < count; at++) {
-        if (touches(edges, place_of(range, at), float(TILE))) {
+    uvec2 at = uvec2(0u);
+    uint done = 0u;
+    for (; done < count; done++) {
+        if (touches(edges, vec2(at) * float(TILE), float(TILE))) {
             atomicAdd(tiles[2u * tile_of(range, at)], 1u);
         }
+        at = after(range, at);
     }
-    if (at < count) {
+    if (done < count) {
         is_ended = 1u;
     }
 }

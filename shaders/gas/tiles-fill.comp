@@ -21,6 +21,7 @@ layout(set = 0, binding = 24, std430) buffer ChunkTiles {
 };
 
 void main() {
+    uint chunk_room = counts.chunks;
     uint triangle = triangle_of(gl_GlobalInvocationID.xy);
     if (triangle >= band.triangle_count) {
         return;
@@ -30,21 +31,23 @@ void main() {
     Edges edges = edges_in(range, seen);
     uint count = range.size.x * range.size.y;
     vec2 depths = facet_of(triangle).range;
-    uint at = 0u;
-    for (; at < count; at++) {
-        if (touches(edges, place_of(range, at), float(TILE))) {
+    uvec2 at = uvec2(0u);
+    uint done = 0u;
+    for (; done < count; done++) {
+        if (touches(edges, vec2(at) * float(TILE), float(TILE))) {
             uint tile = tile_of(range, at);
             uint slot = tiles[2u * tile + 1u] * CHUNK + atomicAdd(tiles[2u * tile], 1u);
             // Another rounding than that of the count could at most leave a triangle out.
-            if (slot < min(counts.chunks, tiles[2u * tile + 3u]) * CHUNK) {
+            if (slot < min(chunk_room, tiles[2u * tile + 3u]) * CHUNK) {
                 tile_triangles[slot] = uvec4(triangle, floatBitsToUint(depths.x), floatBitsToUint(depths.y), 0u);
                 if (slot % CHUNK == 0u) {
                     chunk_tiles[slot / CHUNK] = tile;
                 }
             }
         }
+        at = after(range, at);
     }
-    if (at < count) {
+    if (done < count) {
         is_ended = 1u;
     }
 }

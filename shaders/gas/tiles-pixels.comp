@@ -51,7 +51,7 @@ void main() {
         vec4 outer = edges.at_origin + edges.slack + max(edges.per_column, vec4(0.0)) + max(edges.per_row, vec4(0.0));
         vec4 inner = edges.at_origin - edges.slack + min(edges.per_column, vec4(0.0)) + min(edges.per_row, vec4(0.0));
         inner = mix(vec4(1.0), inner, edges.is_edge);
-        uint object = triangles[triangle].object;
+        uint object = triangle_at(triangle).object;
         bool is_opaque = objects[object].opacity >= 1.0 && objects[object].solid_texture < 0;
         uint columns = bits_between(box.x, box.z);
         uint rows = bits_between(box.y, box.w);

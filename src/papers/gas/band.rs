@@ -106,6 +106,17 @@ impl Band {
         self.dispatch_rows(self.constants(), self.end_row - self.first_row, calls, frame, pass)
     }
 
+    /// Dispatches a thread a pixel once, as number `call` of the band's `calls` dispatches of the pass.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn dispatch_call(self, call: u32, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        frame.compute(pass, |dispatch| {
+            let constants = BandConstants { call, calls, ..self.constants() };
+            dispatch.constants(&constants).threads(self.width, self.end_row - self.first_row, 1);
+        })
+    }
+
     /// As [`Band::dispatch_times`], in dispatches that take a short time each.
     ///
     /// # Errors

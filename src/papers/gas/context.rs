@@ -33,13 +33,13 @@ impl Context<'_> {
         Buffer::new(self.shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
     }
 
-    /// `count` tables of the parameters' size.
+    /// `count` tables of the parameters' size, of each entry its own value and that of the one after it in x.
     ///
     /// # Errors
     /// [`Error::Limit`] for more than the device binds.
     pub fn table(&self, name: &str, count: u64) -> Result<Arc<Buffer>, Error> {
         let entries = u64::from(self.parameters.table_size).pow(3);
-        self.storage::<f32>(name, entries * count).map_err(|error| error.set_by("table"))
+        self.storage::<[f32; 2]>(name, entries * count).map_err(|error| error.set_by("table"))
     }
 
     /// An image of the picture's size.

@@ -18,7 +18,8 @@ host_block! {
 
 /// The pass `density-table`.
 pub struct DensityTable {
-    /// Densities: a table a volume, `table_size` entries along each axis, x fastest.
+    /// Densities: a table a volume, `table_size` entries along each axis, x fastest, of each its own and that of the one after it
+    /// in x.
     pub densities: Arc<Buffer>,
     pass: Pass,
     size: u32,

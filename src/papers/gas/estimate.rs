@@ -88,7 +88,7 @@ impl Parameters {
                 ("density-cache", 4.0 * NUMBER * cached),
                 ("bricks", NUMBER * bricks),
                 ("froxels", 2.0 * RADIANCE * froxels),
-                ("table", NUMBER * table * volumes * (1.0 + lights)),
+                ("table", 2.0 * NUMBER * table * volumes * (1.0 + lights)),
                 ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
             ],

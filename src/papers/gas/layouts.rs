@@ -1,17 +1,19 @@
 //! Host structs against the blocks of buffers that hold them.
 
 use super::blocks::{
-    CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, ObjectBlock, PixelBlock, SectionBlock,
-    TriangleBlock, VertexBlock, VolumeBlock,
+    CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock,
 };
 use super::progress::UnfinishedBlock;
 use crate::papers::layout::{check_block, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for shader in
-        ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept-one.comp", "gas/resolve-none-one.comp"]
-    {
+    for shader in [
+        "gas/fragments.geom",
+        "gas/sort-one.comp",
+        "gas/volume-table-functions-kept-one.comp",
+        "gas/resolve-none-one.comp",
+    ] {
         check_block::<FrameBlock>(shader, "frame");
     }
     check_list::<VolumeBlock>("gas/volume-traced-functions-kept-one.comp", "Volumes");
@@ -19,10 +21,7 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<LightBlock>("gas/volume-traced-functions-kept-one.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
-    check_list::<TriangleBlock>("gas/fragments-plain.frag", "Triangles");
-    check_list::<PixelBlock>("gas/sort.comp", "Pixels");
-    check_list::<SectionBlock>("gas/volume-table-functions-kept-one.comp", "Sections");
     check_block::<CountsBlock>("gas/resolve-none-one.comp", "counts");
-    check_block::<UnfinishedBlock>("gas/sort.comp", "Unfinished");
-    check_block::<CountersBlock>("gas/sort.comp", "Counters");
+    check_block::<UnfinishedBlock>("gas/sort-one.comp", "Unfinished");
+    check_block::<CountersBlock>("gas/sort-one.comp", "Counters");
 }

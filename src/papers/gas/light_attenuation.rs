@@ -33,7 +33,7 @@ impl LightAttenuation {
         let count = u64::from(lists.capacity.fragments) * context.parameters.lights.len() as u64;
         let attenuations = context.storage::<f32>("light-attenuations", count)?;
         let shader = match shadow_sums {
-            Some(_) => "gas/light-attenuation-table.comp".to_owned(),
+            Some(_) => format!("gas/light-attenuation-table-{}.comp", context.parameters.count_shader()),
             None if context.parameters.march == March::Delta => {
                 format!("gas/light-attenuation-ratio-{}.comp", context.parameters.density_shader())
             }

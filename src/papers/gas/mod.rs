@@ -138,7 +138,7 @@ impl Passes {
             Lists::Linked => Surfaces::Linked(Fragments::new(context, scene, &lists)?),
             Lists::Tiles | Lists::Nearest(_) => Surfaces::Tiles(Tiles::new(context, scene, &lists)?),
         };
-        let sort = Sort::new(context, scene, &lists)?;
+        let sort = Sort::new(context, scene, &lists, if has_volume { context.parameters.volumes.len() } else { 0 })?;
         let densities = has_volume.then(|| Densities::new(context, scene, variant)).transpose()?;
         let density_table = densities
             .as_ref()
@@ -403,13 +403,12 @@ impl Paper for Gas {
         } = &self.passes;
         let cache = densities.as_ref().and_then(|densities| densities.cache.as_ref());
         let bricks = densities.as_ref().and_then(|densities| densities.bricks.as_ref());
-        let row = self.parameters.table_size;
         let lights = self.parameters.lights.len() as u32;
         let buffers = [
             cache.map(|pass| Target::table("density-cache", &pass.densities, 4).of("densities before they fade, a table of each volume, x fastest: an entry, and those after it in x, in y, in both")),
             bricks.map(|pass| Target::table("bricks", &pass.bounds, pass.size).of("greatest density of a brick, 0 where it is skipped, a table of each volume, x fastest")),
-            density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row).of("density, a table of each volume, x fastest")),
-            shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row).of("density times metres towards the light, a table of each volume and light, x fastest")),
+            density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, 2).of("density, a table of each volume, x fastest: an entry, and the one after it in x")),
+            shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, 2).of("density times metres towards the light, a table of each volume and light, x fastest: an entry, and the one after it in x")),
             volume.as_ref().map(|pass| Target::table("sections", &pass.sections, 8)
                 .of("a section: near and far in metres, increments, the next one, light in red, green, blue, transparency")),
             light_attenuation.as_ref().map(|pass| Target::table("light-attenuations", &pass.attenuations, lights).of("share of each light that the gas takes, 0 to 1")),

@@ -18,6 +18,8 @@ pub struct Resolve {
     /// Linear RGB, and the opacity of all fragments together.
     pub radiance: Arc<ImageView>,
     pass: Pass,
+    /// The same for pixels that one dispatch does not finish.
+    rest: Pass,
 }
 
 impl Resolve {
@@ -45,35 +47,36 @@ impl Resolve {
             ),
         };
         let has_veins = scene.has_veins();
-        let shader = match (has_veins, context.parameters.lights.len()) {
-            (false, 1) => "gas/resolve-none-one.comp",
-            (false, _) => "gas/resolve-none-several.comp",
-            (true, 1) => "gas/resolve-solid-one.comp",
-            (true, _) => "gas/resolve-solid-several.comp",
+        let veins = if has_veins { "solid" } else { "none" };
+        let count = if context.parameters.lights.len() == 1 { "one" } else { "several" };
+        let (sections, attenuations) =
+            (or_unread(sections, "no sections")?, or_unread(attenuations, "no attenuations")?);
+        let pass_of = |shader: &str| {
+            let pass = Pass::compute("resolve", "A-buffer", &format!("gas/{shader}-{veins}-{count}.comp"));
+            let pass = if has_veins { scene.solid_textures(pass) } else { pass };
+            pass.with("frame", &scene.frame)
+                .with("counts", &scene.counts)
+                .with("Lights", &scene.lights)
+                .with("Objects", &scene.objects)
+                .with("Heads", &lists.heads)
+                .with("Links", &lists.links)
+                .with("Surfaces", &lists.surfaces)
+                .with("Colors", &lists.colors)
+                .with("Pixels", &lists.pixels)
+                .with("Sections", &sections)
+                .with("Attenuations", &attenuations)
+                .with("radiance", &radiance)
+                .with("Progress", &lists.progress.states)
+                .with("Unfinished", &lists.progress.unfinished)
+                .constants::<BandConstants>()
+                .build(context.shaders)
         };
-        let pass = Pass::compute("resolve", "A-buffer", shader);
-        let pass = if has_veins { scene.solid_textures(pass) } else { pass };
-        let pass = pass
-            .with("frame", &scene.frame)
-            .with("counts", &scene.counts)
-            .with("Lights", &scene.lights)
-            .with("Objects", &scene.objects)
-            .with("Heads", &lists.heads)
-            .with("Links", &lists.links)
-            .with("Surfaces", &lists.surfaces)
-            .with("Colors", &lists.colors)
-            .with("Pixels", &lists.pixels)
-            .with("Sections", &or_unread(sections, "no sections")?)
-            .with("Attenuations", &or_unread(attenuations, "no attenuations")?)
-            .with("radiance", &radiance)
-            .with("Progress", &lists.progress.states)
-            .with("Unfinished", &lists.progress.unfinished)
-            .constants::<BandConstants>()
-            .build(context.shaders)?;
-        Ok(Resolve { radiance, pass })
+        let (pass, rest) = (pass_of("resolve")?, pass_of("resolve-rest")?);
+        Ok(Resolve { radiance, pass, rest })
     }
 
     pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
-        band.dispatch_times(calls, frame, &self.pass)
+        band.dispatch_call(0, calls, frame, &self.pass)?;
+        (1..calls).try_for_each(|call| band.dispatch_call(call, calls, frame, &self.rest))
     }
 }

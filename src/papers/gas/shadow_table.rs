@@ -25,8 +25,8 @@ host_block! {
         first_density: u32,
         /// First column and row of entries that the wavefront may have.
         first_column: [i32; 2],
-        /// 1 where the distance is counted along columns' or rows' axis.
-        is_counted: [i32; 2],
+        /// Distance along columns' and rows' axis that is not counted.
+        free: [i32; 2],
         /// Unit vectors along the axes of columns and of rows.
         column_axis: [i32; 3],
         /// First entry of the volume's and light's sums.
@@ -37,7 +37,8 @@ host_block! {
 
 /// The pass `shadow-table`.
 pub struct ShadowTable {
-    /// Sums of density times metres: a table a volume and light, `table_size` entries along each axis, x fastest.
+    /// Sums of density times metres: a table a volume and light, `table_size` entries along each axis, x fastest, of each its own
+    /// and that of the one after it in x.
     pub sums: Arc<Buffer>,
     pass: Pass,
     sweeps: Vec<Sweep>,
@@ -45,14 +46,14 @@ pub struct ShadowTable {
 }
 
 /// The wavefronts that fill the table of one volume and light: the entries of one Manhattan distance from the light's cell,
-/// along the axes that are the longest of some entry's ray to the light. An entry follows from some that are one nearer
-/// along the longest axis of its own ray, and no farther along the others.
+/// along each axis from where on it is the longest of some entry's ray to the light. An entry follows from some that are one
+/// nearer along the longest axis of its own ray, and no farther along the others.
 struct Sweep {
     /// Of distance 0.
     first: WaveConstants,
-    /// True for the axes along which distance is counted.
-    is_counted: [bool; 3],
-    /// Axes of columns and of rows; along the third one the entries of a wavefront are found.
+    /// Distance along each axis that is not counted: no entry within it has its longest way along the axis.
+    free: [i32; 3],
+    /// Axes of columns and of rows; along the third one, where all distance counts, the entries of a wavefront are found.
     axes: [usize; 2],
     count: u32,
 }
@@ -119,15 +120,24 @@ impl Sweep {
             true => ((-along).max(along - last as f32).max(0.0), along.abs().max((along - last as f32).abs())),
         });
         let least = |axis: usize| lengths[axis].0 * (1.0 - 1e-4);
-        let is_counted = [0, 1, 2].map(|axis| lengths[axis].1 >= least((axis + 1) % 3).max(least((axis + 2) % 3)));
-        let axes = match is_counted {
-            [_, _, true] => [0, 1],
-            [_, true, _] => [0, 2],
+        let free = [0, 1, 2].map(|axis| {
+            let wanted = least((axis + 1) % 3).max(least((axis + 2) % 3));
+            // Its length at distance d: in the light's own cell, and in those beside it, that much more than d at most.
+            let at_cell = if (0..last).contains(&cell[axis]) { 1.0 } else { lengths[axis].0 };
+            match is_point {
+                _ if lengths[axis].1 < wanted => last + 1,
+                true => ((wanted - at_cell).ceil() as i32 - 1).clamp(0, last + 1),
+                false => 0,
+            }
+        });
+        // The axis of which the shortest ray is the longest counts from 0 on.
+        let axes = match free {
+            [_, _, 0] => [0, 1],
+            [_, 0, _] => [0, 2],
             _ => [1, 2],
         };
         let unit = |axis: usize| [0, 1, 2].map(|other| i32::from(other == axis));
-        let of_counted = (0..3).filter(|&axis| is_counted[axis]);
-        let farthest: i32 = of_counted.map(|axis| farthest_from(cell[axis], last)).sum();
+        let farthest: i32 = (0..3).map(|axis| (farthest_from(cell[axis], last) - free[axis]).max(0)).sum();
         Sweep {
             first: WaveConstants {
                 source,
@@ -137,30 +147,28 @@ impl Sweep {
                 cell,
                 first_density,
                 first_column: [0; 2],
-                is_counted: axes.map(|axis| is_counted[axis].into()),
+                free: axes.map(|axis| free[axis]),
                 column_axis: unit(axes[0]),
                 first_sum,
                 row_axis: unit(axes[1]),
             },
-            is_counted,
+            free,
             axes,
-            count: farthest.max(0) as u32 + 1,
+            count: farthest as u32 + 1,
         }
     }
 
     /// The first entry along an axis that a wavefront may have, and the number of those from there on.
     fn extent(&self, axis: usize, distance: i32, size: i32) -> (i32, u32) {
-        if !self.is_counted[axis] {
-            return (0, size as u32);
-        }
         let last = size - 1;
-        let others = (0..3).filter(|&other| other != axis && self.is_counted[other]);
-        let of_others: i32 = others.map(|other| farthest_from(self.first.cell[other], last)).sum();
-        let nearest = (distance - of_others).max(0);
+        let farthest = |other: usize| (farthest_from(self.first.cell[other], last) - self.free[other]).max(0);
+        let of_others: i32 = (0..3).filter(|&other| other != axis).map(farthest).sum();
+        let nearest = if distance > of_others { distance - of_others + self.free[axis] } else { 0 };
+        let farthest = distance + self.free[axis];
         let (low, high) = match self.first.cell[axis] {
-            -1 => (nearest, distance),
-            cell if cell == last => (last - distance, last - nearest),
-            cell => (cell - distance, cell + 1 + distance),
+            -1 => (nearest, farthest),
+            cell if cell == last => (last - farthest, last - nearest),
+            cell => (cell - farthest, cell + 1 + farthest),
         };
         let (low, high) = (low.max(0), high.min(last));
         (low, (high - low + 1).max(1) as u32)
@@ -176,6 +184,7 @@ fn farthest_from(cell: i32, last: i32) -> i32 {
 mod tests {
     use super::*;
     use crate::papers::gas::parameters::default_volume;
+    use crate::papers::gas::scenes::Preset;
 
     fn point(x: f32, y: f32, z: f32) -> Light {
         Light::Point { position: Vec3::new(x, y, z), intensity: Vec3::ONE }
@@ -191,7 +200,8 @@ mod tests {
         let size = 9;
         let lights = [point(0.3, -0.2, 0.6), point(3.0, 0.1, -4.0), point(2.0, 5.0, 3.0), point(1.0, 1.0, 1.0)];
         let sides = [parallel(1.0, 0.2, 0.0), parallel(0.1, -1.0, 0.3), parallel(0.0, 0.0, 1.0), point(0.1, 9.0, 0.2)];
-        for light in lights.into_iter().chain(sides) {
+        let slanted = [point(2.2, 0.4, 3.0), point(-3.0, -2.2, 0.2), point(0.3, 1.5, -0.4)];
+        for light in lights.into_iter().chain(sides).chain(slanted) {
             let sweep = Sweep::new(&default_volume(), &light, size, 0, 0);
             let along = |entry: i32, cell: i32| if entry <= cell { cell - entry } else { entry - cell - 1 };
             let (mut entries, mut threads) = (0, 0);
@@ -200,8 +210,9 @@ mod tests {
                 threads += columns * rows;
                 for i in 0..(size * size * size) as i32 {
                     let entry = [i % 9, i / 9 % 9, i / 81];
-                    let counted = (0..3).filter(|&axis| sweep.is_counted[axis]);
-                    if counted.map(|axis| along(entry[axis], sweep.first.cell[axis])).sum::<i32>() == wave {
+                    let counted =
+                        (0..3).map(|axis| (along(entry[axis], sweep.first.cell[axis]) - sweep.free[axis]).max(0));
+                    if counted.sum::<i32>() == wave {
                         entries += 1;
                         let is_in =
                             |axis: usize, first: i32, count: u32| (first..first + count as i32).contains(&entry[axis]);
@@ -215,8 +226,50 @@ mod tests {
         }
     }
 
-    /// Under a light at infinity, and under a far one along an axis, a wavefront is a plane; two axes are as many as the rays
-    /// turn between.
+    /// An entry's wavefront is after those of all that it follows from: one nearer along the longest axis of its ray, and as near
+    /// or one nearer along the others.
+    #[test]
+    fn wavefronts_follow_what_they_read() {
+        let size = 9;
+        let mut random = crate::scene::random::Random::new(5);
+        for light in 0..300 {
+            let place = [0; 3].map(|_| random.range(-4.0, 4.0));
+            let light = if light % 5 == 0 {
+                parallel(place[0], place[1], place[2])
+            } else {
+                point(place[0], place[1], place[2])
+            };
+            let sweep = Sweep::new(&default_volume(), &light, size, 0, 0);
+            let WaveConstants { source, is_point, cell, .. } = sweep.first;
+            let wave = |entry: [i32; 3]| -> i32 {
+                let along = |axis: usize| match entry[axis] <= cell[axis] {
+                    true => cell[axis] - entry[axis],
+                    false => entry[axis] - cell[axis] - 1,
+                };
+                (0..3).map(|axis| (along(axis) - sweep.free[axis]).max(0)).sum()
+            };
+            assert_eq!(sweep.free[3 - sweep.axes[0] - sweep.axes[1]], 0, "{light:?}");
+            for i in 0..729 {
+                let entry = [i % 9, i / 9 % 9, i / 81];
+                let way = [0, 1, 2].map(|a| if is_point == 0 { source[a] } else { source[a] - entry[a] as f32 });
+                let longest = way.iter().fold(0.0_f32, |most, w| most.max(w.abs()));
+                let leaves = |a: usize| (entry[a] == 0 && way[a] < 0.0) || (entry[a] == 8 && way[a] > 0.0);
+                if (0..3).any(leaves) || (is_point != 0 && longest <= 1.0) {
+                    continue;
+                }
+                let axis = (0..3).find(|&a| way[a].abs() == longest).unwrap();
+                let step = way.map(|w| if w >= 0.0 { 1 } else { -1 });
+                for corner in 0..4 {
+                    let moved = |a: usize| a == axis || corner >> i32::from(a == (axis + 1) % 3) & 1 == 1;
+                    let read = [0, 1, 2].map(|a| (entry[a] + if moved(a) { step[a] } else { 0 }).clamp(0, 8));
+                    assert!(wave(read) < wave(entry), "{light:?}: {entry:?} reads {read:?}");
+                }
+            }
+        }
+    }
+
+    /// Under a light at infinity, and under a far one along an axis, a wavefront is a plane; a second axis counts from where on
+    /// some ray is longest along it.
     #[test]
     fn wavefronts_are_as_few_as_the_rays_allow() {
         let count = |light: Light| Sweep::new(&default_volume(), &light, 64, 0, 0).count;
@@ -224,6 +277,8 @@ mod tests {
         assert_eq!(count(parallel(1.0, 0.0, 0.0)), 64);
         assert_eq!(count(point(0.2, 0.1, -20.0)), 64);
         assert_eq!(count(point(9.0, 0.1, 9.0)), 127);
+        let steam = Preset::Fig8.scene().parameters;
+        assert_eq!(Sweep::new(&steam.volumes[0], &steam.lights[0], 64, 0, 0).count, 69);
         assert_eq!(count(parallel(1.0, 1.0, 1.0)), 190, "of equal lengths any is the longest");
         assert!(count(point(0.1, 0.2, 0.3)) < 190, "inside");
     }

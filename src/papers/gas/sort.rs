@@ -12,10 +12,18 @@ pub struct Sort {
 }
 
 impl Sort {
+    /// Sections are counted of the volumes that are marched, `volume_count`.
+    ///
     /// # Errors
     /// Those of Vulkan.
-    pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
-        let pass = Pass::compute("sort", "A-buffer", "gas/sort.comp")
+    pub fn new(
+        context: &Context<'_>,
+        scene: &SceneBuffers,
+        lists: &ABuffer,
+        volume_count: usize,
+    ) -> Result<Self, Error> {
+        let shader = if volume_count == 1 { "gas/sort-one.comp" } else { "gas/sort-several.comp" };
+        let pass = Pass::compute("sort", "A-buffer", shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)

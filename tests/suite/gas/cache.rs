@@ -85,7 +85,7 @@ fn volumes_have_their_own_tables() {
 
         let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
         let medium = Medium::new(&parameters, FRAME);
-        for (table, volume) in drawing.target("density-table").chunks_exact(1000).zip(&volumes) {
+        for (table, volume) in drawing.entries("density-table", 10).chunks_exact(1000).zip(&volumes) {
             for (i, (&found, value)) in table.iter().zip(density_table(&medium, volume, 10)).enumerate() {
                 // An entry on the boundary may be outside but for rounding: what it holds then has faded.
                 let is_near = (f64::from(found) - value).abs() < 2e-4 * (1.0 + value);

@@ -32,7 +32,8 @@ fn largest_differences(
     };
     let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
     let medium = Medium::new(&parameters, FRAME);
-    let tables = drawing.target("density-table").chunks_exact((size * size * size) as usize);
+    let entries = drawing.entries("density-table", size as usize);
+    let tables = entries.chunks_exact((size * size * size) as usize);
     tables
         .zip(volumes)
         .map(|(table, volume)| {

@@ -105,6 +105,15 @@ impl Drawing {
         &self.targets.iter().find(|(n, _)| n == name).unwrap().1
     }
 
+    /// The entries of a table, beside each of which that stands which is after it in x: of a row's last one the first.
+    pub fn entries(&self, name: &str, size: usize) -> Vec<f32> {
+        let pairs: Vec<&[f32]> = self.target(name).chunks_exact(2).collect();
+        for row in pairs.chunks_exact(size) {
+            assert!((0..size).all(|x| row[x][1].to_bits() == row[(x + 1) % size][0].to_bits()), "{name}");
+        }
+        pairs.iter().map(|pair| pair[0]).collect()
+    }
+
     /// Linear RGB of a pixel.
     pub fn color(&self, pixel: usize) -> DVec3 {
         Vec3::from_slice(&self.radiance[4 * pixel..4 * pixel + 3]).as_dvec3()

@@ -142,7 +142,8 @@ fn grids_are_tabled_as_the_oracle_has_them() {
             parameters.volumes.iter_mut().for_each(|volume| volume.falloff = 0.0);
             let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
             let medium = Medium::new(&parameters, FRAME);
-            let tables = drawing.target("density-table").chunks_exact((SIZE * SIZE * SIZE) as usize);
+            let entries = drawing.entries("density-table", SIZE as usize);
+            let tables = entries.chunks_exact((SIZE * SIZE * SIZE) as usize);
             assert_eq!(tables.len(), 2);
             for (table, volume) in tables.zip(&parameters.volumes) {
                 let expected = density_table(&medium, volume, SIZE);

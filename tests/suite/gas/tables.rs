@@ -60,9 +60,10 @@ fn the_devices_table_is_the_sequential_one() {
             let size = 17;
             let parameters = parameters(volume, &lights, size);
             let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
-            let densities: Vec<f64> = drawing.target("density-table").iter().map(|&d| f64::from(d)).collect();
-            let tables = drawing.target("shadow-table").chunks_exact(densities.len());
-            for (table, light) in tables.zip(&lights) {
+            let densities: Vec<f64> =
+                drawing.entries("density-table", size as usize).iter().map(|&d| f64::from(d)).collect();
+            let sums = drawing.entries("shadow-table", size as usize);
+            for (table, light) in sums.chunks_exact(densities.len()).zip(&lights) {
                 let expected = shadow_table(&densities, &volume, light, size);
                 let worst = table.iter().zip(&expected).map(|(&a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max);
                 assert!(worst < 1e-4, "{light:?}: {worst}");
@@ -84,7 +85,7 @@ fn a_constant_density_is_exact() {
             let light = parallel(-way.x as f32, -1.0, -way.z as f32);
             let drawing = Drawing::of(device, Variant::Table, &parameters(volume, &[light], size), &[]);
             let mut count = 0;
-            for (i, &sum) in drawing.target("shadow-table").iter().enumerate() {
+            for (i, &sum) in drawing.entries("shadow-table", 64).iter().enumerate() {
                 let [column, row, slice] = [i % 64, i / 64 % 64, i / 4096];
                 if way != DVec3::Y && (column > row || slice > row) {
                     continue;
@@ -111,7 +112,7 @@ fn the_table_is_near_traced_rays() {
             let parameters = parameters(volume, lights, 64);
             let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
             let medium = Medium::new(&parameters, 0);
-            for (table, light) in drawing.target("shadow-table").chunks_exact(64 * 64 * 64).zip(lights) {
+            for (table, light) in drawing.entries("shadow-table", 64).chunks_exact(64 * 64 * 64).zip(lights) {
                 let (mut sum, mut count) = (0.0, 0);
                 for i in (0..table.len()).step_by(1013) {
                     let i32s = i as i32;

@@ -246,8 +246,12 @@ impl Parameters {
     /// or several of either.
     pub(super) fn ray_shader(&self) -> String {
         let empty = if self.skip_empty.is_some() { "skipped" } else { "kept" };
-        let count = if self.volumes.len() == 1 && self.lights.len() == 1 { "one" } else { "several" };
-        format!("{}-{empty}-{count}", self.density_shader())
+        format!("{}-{empty}-{}", self.density_shader(), self.count_shader())
+    }
+
+    /// The shaders' name of rays through one volume under one light, or several of either.
+    pub(super) fn count_shader(&self) -> &'static str {
+        if self.volumes.len() == 1 && self.lights.len() == 1 { "one" } else { "several" }
     }
 
     /// The optical depth that a ray through a volume may lose in its bricks; nothing where there are no bricks, as where no
