@@ -119,7 +119,7 @@ fn a_scan_of_a_head_has_its_own_densities() {
     program.args("--image head.png --dump density-table=table.npy").inside(out.path()).run().succeeded();
     // Beside each density stands that of the entry after it.
     let (_, pairs) = read_npy(&out.path().join("table.npy"));
-    let table: Vec<f32> = pairs.iter().copied().step_by(2).collect();
+    let table: Vec<f64> = pairs.iter().copied().step_by(2).collect();
     let bytes = std::fs::read(&path).unwrap();
     let value = |at: [usize; 3]| {
         let byte = 352 + 2 * ((at[2] * COUNTS[1] + at[1]) * COUNTS[0] + at[0]);
