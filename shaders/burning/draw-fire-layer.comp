@@ -83,6 +83,39 @@ vec4 shining(Square square, vec2 pixel, float mesh) {
     return vec4(shown(square, at, WIDEST, mesh) * fire(at, square.age, square.own), 0.0);
 }
 
+const uint NONE = 0xffffffffu;
+const float FARTHEST = 1.0e30; // beyond all that is drawn
+
+// The particles that reach a tile, one after the other.
+struct Walk {
+    uint slot; // NONE behind the last
+    uint bits; // left of its word
+    uint word;
+    uint words; // left of its summary
+    uint summary;
+};
+
+Walk next(Walk walk, ivec2 lines, bool of_smoke) {
+    while (walk.bits == 0u && (walk.words != 0u || walk.summary < SUMMARIES)) {
+        if (walk.words == 0u) {
+            bool is_smoke = chunk.first + 1024u * walk.summary < chunk.fire_from;
+            walk.words = is_smoke == of_smoke ? reaching(WORDS + walk.summary, lines) : 0u;
+            walk.summary++;
+        } else {
+            walk.word = 32u * (walk.summary - 1u) + uint(findLSB(walk.words));
+            walk.words &= walk.words - 1u;
+            walk.bits = reaching(walk.word, lines);
+        }
+    }
+    walk.slot = walk.bits == 0u ? NONE : 32u * walk.word + uint(findLSB(walk.bits));
+    walk.bits &= walk.bits - 1u;
+    return walk;
+}
+
+Walk walk_of(uint summary, ivec2 lines, bool of_smoke) {
+    return next(Walk(NONE, 0u, 0u, 0u, summary), lines, of_smoke);
+}
+
 void draw(ivec2 pixel, vec4 sum, float mesh) {
     // Of 16-bit floats: sums of very many flames have none.
     vec4 color = min(sum, vec4(65504.0));
@@ -117,43 +150,39 @@ void main() {
     vec4 sum7 = start(first + 7 * below);
     vec2 pixel = vec2(first);
     const vec2 down = vec2(0.0, 1.0);
-    for (uint summary = 0u; summary < SUMMARIES; summary++) {
-        uint words = reaching(WORDS + summary, lines);
-        bool is_smoke = chunk.first + 1024u * summary < chunk.fire_from;
-        while (words != 0u) {
-            uint word = 32u * summary + uint(findLSB(words));
-            words &= words - 1u;
-            uint bits = reaching(word, lines);
-            uint covers = is_smoke ? bits : 0u;
-            uint shines = is_smoke ? 0u : bits;
-            while (covers != 0u) {
-                ivec2 record = record_at(32u * word + uint(findLSB(covers)));
-                covers &= covers - 1u;
-                Square square = square_of(record);
-                vec4 color = texelFetch(records, record + ivec2(0, 2), 0);
-                sum0 = covered(sum0, square, color, pixel, mesh0);
-                sum1 = covered(sum1, square, color, pixel + down, mesh1);
-                sum2 = covered(sum2, square, color, pixel + 2.0 * down, mesh2);
-                sum3 = covered(sum3, square, color, pixel + 3.0 * down, mesh3);
-                sum4 = covered(sum4, square, color, pixel + 4.0 * down, mesh4);
-                sum5 = covered(sum5, square, color, pixel + 5.0 * down, mesh5);
-                sum6 = covered(sum6, square, color, pixel + 6.0 * down, mesh6);
-                sum7 = covered(sum7, square, color, pixel + 7.0 * down, mesh7);
-            }
-            while (shines != 0u) {
-                Square square = square_of(record_at(32u * word + uint(findLSB(shines))));
-                shines &= shines - 1u;
-                sum0 += shining(square, pixel, mesh0);
-                sum1 += shining(square, pixel + down, mesh1);
-                sum2 += shining(square, pixel + 2.0 * down, mesh2);
-                sum3 += shining(square, pixel + 3.0 * down, mesh3);
-                sum4 += shining(square, pixel + 4.0 * down, mesh4);
-                sum5 += shining(square, pixel + 5.0 * down, mesh5);
-                sum6 += shining(square, pixel + 6.0 * down, mesh6);
-                sum7 += shining(square, pixel + 7.0 * down, mesh7);
-            }
-        }
-    }
+    // Loops ask at their end, and one loop alone holds what is dear: drivers that run eight threads at once go through a
+    // loop's body once more than it is asked for.
+    Walk walk = walk_of(0u, lines, true);
+    do {
+        bool is_there = walk.slot != NONE;
+        ivec2 record = record_at(is_there ? walk.slot : 0u);
+        Square square = square_of(record);
+        vec4 color = texelFetch(records, record + ivec2(0, 2), 0);
+        color.a = is_there ? color.a : 0.0;
+        sum0 = covered(sum0, square, color, pixel, mesh0);
+        sum1 = covered(sum1, square, color, pixel + down, mesh1);
+        sum2 = covered(sum2, square, color, pixel + 2.0 * down, mesh2);
+        sum3 = covered(sum3, square, color, pixel + 3.0 * down, mesh3);
+        sum4 = covered(sum4, square, color, pixel + 4.0 * down, mesh4);
+        sum5 = covered(sum5, square, color, pixel + 5.0 * down, mesh5);
+        sum6 = covered(sum6, square, color, pixel + 6.0 * down, mesh6);
+        sum7 = covered(sum7, square, color, pixel + 7.0 * down, mesh7);
+        walk = next(walk, lines, true);
+    } while (walk.slot != NONE);
+    walk = walk_of(0u, lines, false);
+    do {
+        Square square = square_of(record_at(walk.slot != NONE ? walk.slot : 0u));
+        square.eye_depth = walk.slot != NONE ? square.eye_depth : FARTHEST;
+        sum0 += shining(square, pixel, mesh0);
+        sum1 += shining(square, pixel + down, mesh1);
+        sum2 += shining(square, pixel + 2.0 * down, mesh2);
+        sum3 += shining(square, pixel + 3.0 * down, mesh3);
+        sum4 += shining(square, pixel + 4.0 * down, mesh4);
+        sum5 += shining(square, pixel + 5.0 * down, mesh5);
+        sum6 += shining(square, pixel + 6.0 * down, mesh6);
+        sum7 += shining(square, pixel + 7.0 * down, mesh7);
+        walk = next(walk, lines, false);
+    } while (walk.slot != NONE);
     if (any(greaterThan(tile, last_tile))) {
         return;
     }
