@@ -22,9 +22,6 @@ host_block! {
     }
 }
 
-/// Index of the start among the fluid's states.
-const START: usize = 2;
-
 /// One position and one velocity texture, a texel for each particle.
 #[derive(Clone)]
 pub struct State {
@@ -130,7 +127,7 @@ impl Animate {
         Ok(Animate { motion, states, inflow, steps: 0 })
     }
 
-    /// Moves the particles one step.
+    /// Moves the particles one step, or a fluid by those of a frame.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -141,8 +138,7 @@ impl Animate {
                 frame.graphics(pass, |draw| draw.constants(constants).vertices(3))?;
             }
             Motion::Sph(sph) => {
-                let from = if self.steps == 0 { START } else { 1 - self.steps as usize % 2 };
-                sph.record(frame, from, self.steps, [self.steps, self.steps + 1].map(|steps| self.inflow.out(steps)))?;
+                sph.record(frame, self.steps, &self.inflow)?;
             }
         }
         self.steps += 1;
@@ -162,7 +158,7 @@ impl Animate {
         self.steps = 0;
     }
 
-    /// Steps since the start.
+    /// Frames since the start, each a step but of a fluid.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -179,7 +175,8 @@ impl Animate {
 
     /// Index of the state that the last step wrote; the first before any.
     pub fn current(&self) -> usize {
-        (self.steps.saturating_sub(1) % 2) as usize
+        let substeps = self.sph().map_or(1, |sph| sph.substeps);
+        (self.steps.saturating_mul(substeps).saturating_sub(1) % 2) as usize
     }
 }
 

@@ -189,6 +189,7 @@ impl Study for Setup {
         }
         let slope_deg = self.parameters.flow.slope_deg(scene.particles.bed.is_level());
         config.extend(entries([("rho", json!(self.parameters.rho())), ("slope", json!(slope_deg))]));
+        config.extend(paper.animate.sph().map(|sph| ("substeps".to_owned(), json!(sph.substeps))));
         add_object_triangles(&mut config, &scene.objects);
         config
     }

@@ -28,13 +28,13 @@ pub(super) fn flowing() -> Parameters {
 }
 
 pub(super) fn oracle(parameters: &Parameters) -> Fluid {
-    let Scale { spacing_m, support_m, margin_m, .. } = Scale::of(parameters);
+    let Scale { spacing_m, support_m, margin_m, step_s, .. } = Scale::of(parameters);
     Fluid {
         space: parameters.space_m.as_dvec3(),
         bed: Box::new(|_| DVec3::ZERO),
         spacing: spacing_m,
         support: support_m,
-        step: f64::from(parameters.time_step_s),
+        step: step_s,
         kinematic: f64::from(parameters.flow.viscosity_pa_s) / f64::from(parameters.flow.melt_kg_m3),
         margin: margin_m,
         is_periodic: parameters.flow.sides == Sides::Periodic,
@@ -294,7 +294,9 @@ fn numbers_that_make_no_fluid_are_refused() {
             },
         ),
         ("time-step", Parameters { time_step_s: 0.0, ..good.clone() }),
-        ("time-step", Parameters { time_step_s: 1.0, ..good.clone() }),
+        ("time-step", Parameters { time_step_s: 10.0, ..good.clone() }),
+        ("substeps", flow(Flow { substeps: Some(0), ..of.clone() })),
+        ("substeps", Parameters { time_step_s: 1.0, ..flow(Flow { substeps: Some(4), ..of.clone() }) }),
         ("speed", Parameters { speed_m_s: 0.5, ..good.clone() }),
         (
             "viscosity",

@@ -2,6 +2,7 @@
 
 mod animation;
 mod bed;
+mod benchmarks;
 mod blackbody;
 mod crust;
 mod culling;

@@ -27,6 +27,8 @@ const DENSEST: f64 = 2.0;
 /// Greatest speed over that of a free fall from the highest particle to the lowest place: what nothing slows breaks a dam as fast
 /// as the square root of 2 of it.
 const FASTEST: f64 = std::f64::consts::SQRT_2;
+/// Distances of particles that pressure alone moves one in the first step, at most.
+const PRESSED: f64 = 0.25;
 /// Heat that may come from nothing, and energy, over the most that there is.
 const GAINED: f64 = 1e-4;
 
@@ -137,9 +139,10 @@ impl Laws {
     }
 
     /// The first step presses apart what the lattice of the start has laid too close, at walls above all: that energy counts as
-    /// the start's.
-    fn settle(&mut self, first: &Found) {
+    /// the start's, and the speed up to `pressed_m_s`.
+    fn settle(&mut self, first: &Found, pressed_m_s: f64) {
         self.energy_j_kg = self.energy_j_kg.map(|start| start.max(first.energy_j_kg));
+        self.fastest_m_s = self.fastest_m_s.max(first.fastest_m_s.min(pressed_m_s));
     }
 
     /// Fails by the first law that a frame breaks after another.
@@ -219,7 +222,7 @@ pub fn follow(
     let scene = setup.load()?;
     let bed = &scene.particles.bed;
     let mut animate = Animate::new(&machine.shaders, "stability", p, &scene.particles)?;
-    let spacing_m = Scale::of(p).spacing_m;
+    let Scale { spacing_m, step_s, .. } = Scale::of(p);
     let start: Vec<DVec3> = scene.particles.positions.iter().map(|place| place.as_dvec3()).collect();
     let mut laws = Laws::of(p, bed, &start);
     let vent = p.flow.vent;
@@ -239,7 +242,7 @@ pub fn follow(
         let held = counted(&items[..out.min(items.len())]).and_then(|()| {
             let found = laws.found(bed, &state, &densities)?;
             if before.is_none() {
-                laws.settle(&found);
+                laws.settle(&found, PRESSED * spacing_m / step_s);
             }
             laws.hold(before.as_ref().unwrap_or(&found), &found)?;
             Ok(found)

@@ -6,7 +6,9 @@ use super::Scale;
 use super::chebyshev;
 use super::heat::{Heat, LEAST_INTERVAL_K, MOST_LATENT_K, Rheology};
 use super::parameters::{Flow, Sides, Simulation};
+use super::substeps;
 use crate::measure::ParameterError;
+use crate::measure::parameter::{Extents, Value as _};
 
 /// Checks what ranges of single numbers do not.
 ///
@@ -32,14 +34,39 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         "is that of free particles; a fluid starts at rest",
     )?;
     let scale = Scale::of(parameters);
-    let step_s = f64::from(parameters.time_step_s);
-    let fallen_m = step_s * step_s * f64::from(flow.gravity_m_s2);
+    let least_m = 2.0 * scale.margin_m;
     ParameterError::check(
-        parameters.time_step_s > 0.0 && fallen_m <= scale.support_m,
+        f64::from(parameters.space_m.min_element()) >= least_m,
+        "space",
+        Extents(parameters.space_m.to_array()).text(),
+        &format!(
+            "must be {least_m} metres along every side at least, half a distance of the particles: make it wider, or take more \
+             `particles`"
+        ),
+    )?;
+    ParameterError::check(
+        parameters.time_step_s > 0.0,
         "time-step",
         parameters.time_step_s,
-        "must be above 0, and so short that gravity alone moves lava by no more than 2.4 distances of its particles",
+        "must be above 0 for a fluid",
     )?;
+    let steps = substeps::needed(parameters, scale.support_m);
+    ParameterError::check(
+        flow.substeps.is_some() || steps <= f64::from(substeps::MOST),
+        "time-step",
+        parameters.time_step_s,
+        &format!(
+            "would need {steps:.0} steps of the lava in a frame, of {} at most: take a shorter one, fewer `particles` or more \
+             `corrections`",
+            substeps::MOST
+        ),
+    )?;
+    let fallen_m = scale.step_s * scale.step_s * f64::from(flow.gravity_m_s2);
+    if let Some(substeps) = flow.substeps {
+        let problem = "are so few that gravity alone moves lava by more than 2.4 distances of its particles in one: take more \
+                       or a shorter `time-step`";
+        ParameterError::check(fallen_m <= scale.support_m, "substeps", substeps, problem)?;
+    }
     check_heat(flow, &scale)?;
     flow.crust.check(parameters)?;
     flow.vent.check(parameters)?;
@@ -53,8 +80,8 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         name,
         viscosity_pa_s,
         &format!(
-            "would need {needed:.0} iterations a step of {MOST_ITERATIONS} at most: take a shorter `time-step` or fewer \
-             `particles`"
+            "would need {needed:.0} iterations a step of {MOST_ITERATIONS} at most: take a shorter `time-step`, more \
+             `substeps` or fewer `particles`"
         ),
     )?;
     let [columns, _, rows] = scale.cells(parameters, parameters.particles).counts;
@@ -82,8 +109,8 @@ fn check_heat(flow: &Flow, scale: &Scale) -> Result<(), ParameterError> {
         MOST_CONDUCTED * scale.heat_stiffness <= 1.0,
         "conductivity",
         heat.conductivity_w_mk,
-        "would carry heat farther in a step than from particle to particle: take a shorter `time-step`, fewer `particles` or \
-         a larger `heat-capacity`",
+        "would carry heat farther in a step than from particle to particle: take a shorter `time-step`, more `substeps`, \
+         fewer `particles` or a larger `heat-capacity`",
     )?;
     let default = Heat::default();
     let (is_basalt, is_latent) = (heat.rheology == Rheology::Basalt, heat.latent_j_kg > 0.0);

@@ -20,6 +20,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
         chebyshev::needed(scale.stiffness * scale.stiffest) + 2.0 * f64::from(parameters.flow.corrections) + 5.0;
     let looked_at_in_all =
         2.0 * particles * looked_at + iterations * neighbours::looked_at(parameters.particles, looked_at);
+    let steps = f64::from(scale.substeps);
     let [columns, _, rows] = parameters.density.map(f64::from);
     let detail = f64::from(parameters.flow.crust.detail(parameters).unwrap_or(0));
     let crust = detail * detail * columns * rows;
@@ -29,8 +30,8 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
             ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
         ],
         buffers: vec![("particles", 16.0 * particles)],
-        passes: Some(("corrections", iterations as u64 + 24)),
-        invocations: vec![("particles", looked_at_in_all), ("density", 2.0 * crust * looked_at)],
+        passes: Some(("corrections", (steps * (iterations + 24.0)) as u64)),
+        invocations: vec![("particles", steps * looked_at_in_all), ("density", 2.0 * crust * looked_at)],
         ..Estimate::default()
     }
 }

@@ -38,6 +38,7 @@ mod sph_rheology;
 mod sph_strain;
 mod sph_viscosity;
 pub mod start;
+pub mod substeps;
 pub mod surface_temperature;
 pub mod vent;
 
@@ -62,6 +63,7 @@ use self::sph_predict::sph_predict;
 use self::sph_rheology::sph_rheology;
 use self::sph_strain::sph_strain;
 use self::sph_viscosity::sph_viscosity;
+use self::vent::Inflow;
 use super::animate::State;
 use super::gpu_driven::Cells;
 use super::gpu_driven::sort::Sort;
@@ -113,6 +115,8 @@ host_block! {
 
 /// Most iterations of a step's viscosity.
 const MOST_ITERATIONS: u32 = 300;
+/// Index of the start among the fluid's states.
+const START: usize = 2;
 /// The fluid.
 pub struct Sph {
     /// By cells of the kernel's radius, of the start and of the two states.
@@ -134,6 +138,8 @@ pub struct Sph {
     pub(super) constants: FlowConstants,
     coefficients: Vec<Coefficients>,
     corrections: u32,
+    /// Steps of a frame.
+    pub substeps: u32,
     /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
     /// even in number.
     pub velocities: [Arc<ImageView>; 2],
@@ -211,7 +217,7 @@ impl Sph {
         };
         let corrections = parameters.flow.corrections;
         let width = states[0].positions.width();
-        let renewal_steps = f64::from(parameters.flow.renewal_s) / f64::from(parameters.time_step_s);
+        let renewal_steps = f64::from(parameters.flow.renewal_s) / scale.step_s;
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
         let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state], &by_particles);
@@ -243,6 +249,7 @@ impl Sph {
             sort,
             coefficients,
             corrections,
+            substeps: scale.substeps,
             velocities,
             pushed,
             heat,
@@ -255,12 +262,22 @@ impl Sph {
         })
     }
 
-    /// The step of this number from a state, the third of which is the start. Of the particles that are `out`, `before` have been so in
-    /// the last step.
+    /// A frame's steps, after those of so many frames.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, from: usize, step: u32, [before, out]: [u32; 2]) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, frames: u32, inflow: &Inflow) -> Result<(), Error> {
+        let first = frames.saturating_mul(self.substeps);
+        for step in first..first.saturating_add(self.substeps) {
+            let from = if step == 0 { START } else { 1 - step as usize % 2 };
+            self.record_step(frame, from, step, [step, step + 1].map(|steps| inflow.after(steps)))?;
+        }
+        Ok(())
+    }
+
+    /// The step of this number from a state, the third of which is the start. Of the particles that are `out`, `before` have been so in
+    /// the last step.
+    fn record_step(&self, frame: &mut Frame<'_>, from: usize, step: u32, [before, out]: [u32; 2]) -> Result<(), Error> {
         let Layings { kept, .. } = self.rock.layings(step);
         let kept_rock = u32::from(kept[0] > 0.0) | u32::from(kept[1] > 0.0) << 1;
         let constants = FlowConstants { particles: out, kept_rock, ..self.constants };
@@ -410,7 +427,7 @@ fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, is_level: bo
         counts: cells.counts,
         width: 0,
         gravity_m_s2: [flow.gravity_m_s2 * sine, -flow.gravity_m_s2 * cosine, 0.0],
-        time_step_s: parameters.time_step_s,
+        time_step_s: scale.step_s as f32,
         support_m: scale.support_m as f32,
         volume: scale.volume as f32,
         drag: (2.0 * scale.stiffness * scale.laplacian) as f32,

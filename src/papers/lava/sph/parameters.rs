@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::crust::Crust;
 use super::heat::Heat;
+use super::substeps;
 use super::vent::Vent;
 use crate::measure::parameter::{Cost, Extents, Field, Parameter, Range, Value as _};
 use crate::{choice, field};
@@ -46,6 +47,8 @@ pub struct Flow {
     pub sides: Sides,
     /// Most corrections of the density in a step, 1 to 100.
     pub corrections: u32,
+    /// Steps in the time of a frame, 1 to 100; without it as many as the lava's depth needs.
+    pub substeps: Option<u32>,
     /// Time in seconds after which each of two layings of the rock is renewed, 0.1 to 1000.
     pub renewal_s: f32,
     /// Heat, and what it makes of the viscosity.
@@ -66,6 +69,7 @@ impl Default for Flow {
             slope_deg: None,
             sides: Sides::Walls,
             corrections: 12,
+            substeps: None,
             renewal_s: 4.0,
             heat: Heat::default(),
             crust: Crust::default(),
@@ -124,6 +128,13 @@ impl Flow {
                 .help("With sph: most corrections of the density in a step")
                 .section("9")
                 .cost(Cost::Buffers),
+            Parameter::new("substeps", field!(Flow.substeps))
+                .range(Range::from(1.0).to(f64::from(substeps::MOST)))
+                .help("With sph: steps in the time of a frame; finer particles and deeper lava need more of them")
+                .section("9")
+                .default_text("as many as the lava needs")
+                .cost(Cost::Buffers)
+                .unrecorded(),
             Parameter::new("rock-renewal", field!(Flow.renewal_s))
                 .range(Range::from(0.1).to(1000.0))
                 .unit("seconds")

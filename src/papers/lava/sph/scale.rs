@@ -2,7 +2,7 @@
 
 use super::super::gpu_driven::Cells;
 use super::super::parameters::Parameters;
-use super::kernel;
+use super::{kernel, substeps};
 
 /// Nearest that a particle comes to a wall, in distances of particles at rest.
 const MARGIN: f64 = 0.25;
@@ -20,6 +20,10 @@ pub struct Scale {
     pub volume: f64,
     /// The same, so that a lattice has the Laplacian of a parabola.
     pub laplacian: f64,
+    /// Steps in the time of a frame.
+    pub substeps: u32,
+    /// Time of one, seconds.
+    pub step_s: f64,
     /// Step times viscosity over density and support^2.
     pub stiffness: f64,
     /// Nearest that a particle comes to a wall, metres.
@@ -43,13 +47,16 @@ impl Scale {
         let (density, laplacian) = kernel::lattice_sums();
         let volume = (spacing_m / support_m).powi(3);
         let kinematic = f64::from(flow.viscosity_pa_s) / f64::from(flow.melt_kg_m3);
-        let step_s = f64::from(parameters.time_step_s);
+        let substeps = substeps::of(parameters, support_m);
+        let step_s = f64::from(parameters.time_step_s) / f64::from(substeps);
         let diffusivity_m2_s = flow.heat.diffusivity_m2_s(flow.melt_kg_m3);
         Scale {
             spacing_m,
             support_m,
             volume: volume / density,
             laplacian: volume / laplacian,
+            substeps,
+            step_s,
             stiffness: step_s * kinematic / (support_m * support_m),
             margin_m: MARGIN * spacing_m,
             heat_stiffness: step_s * diffusivity_m2_s / (support_m * support_m),

@@ -54,12 +54,12 @@ impl SurfaceTemperature {
         Ok(SurfaceTemperature { pass, constants: sph.constants, temperatures, carried })
     }
 
-    /// After so many steps.
+    /// After so many frames.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, sph: &Sph, steps: u32) -> Result<(), Error> {
-        let Layings { share, .. } = sph.rock.layings(steps.saturating_sub(1));
+    pub fn record(&self, frame: &mut Frame<'_>, sph: &Sph, frames: u32) -> Result<(), Error> {
+        let Layings { share, .. } = sph.rock.layings(frames.saturating_mul(sph.substeps).saturating_sub(1));
         let constants = FlowConstants { share, ..self.constants };
         frame.compute(&self.pass, |dispatch| {
             dispatch.constants(&constants).threads(self.temperatures.width(), self.temperatures.height(), 1)

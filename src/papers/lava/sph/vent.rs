@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::super::parameters::Parameters;
+use super::Scale;
 use crate::field;
 use crate::measure::ParameterError;
 use crate::measure::parameter::{Cost, Parameter, Range};
@@ -33,6 +34,8 @@ impl Default for Vent {
 pub struct Inflow {
     /// Particles in a step; none where all are there at the start.
     per_step: Option<f64>,
+    /// Steps of a frame.
+    substeps: u32,
     /// The pool.
     particles: u32,
 }
@@ -41,12 +44,18 @@ impl Inflow {
     /// Of these parameters, with so many particles.
     pub fn of(parameters: &Parameters, particles: u32) -> Self {
         let flow = &parameters.flow;
-        let step_m3 = f64::from(parameters.time_step_s) * f64::from(flow.vent.effusion_m3_s);
-        Inflow { per_step: (step_m3 > 0.0).then(|| step_m3 / flow.spacing_m(particles).powi(3)), particles }
+        let Scale { step_s, substeps, .. } = Scale::of(parameters);
+        let step_m3 = step_s * f64::from(flow.vent.effusion_m3_s);
+        Inflow { per_step: (step_m3 > 0.0).then(|| step_m3 / flow.spacing_m(particles).powi(3)), substeps, particles }
     }
 
-    /// Particles that are out after so many steps: at least the first.
-    pub fn out(&self, steps: u32) -> u32 {
+    /// Particles that are out after so many frames: at least the first.
+    pub fn out(&self, frames: u32) -> u32 {
+        self.after(frames.saturating_mul(self.substeps))
+    }
+
+    /// After so many steps of frames.
+    pub fn after(&self, steps: u32) -> u32 {
         match self.per_step {
             None => self.particles,
             Some(per_step) => ((f64::from(steps) * per_step).round() as u32).clamp(1, self.particles),
@@ -101,13 +110,13 @@ impl Vent {
             format!("{x},{z}"),
             &format!("must lie in the space with all of its radius, {} metres, and that height", self.radius_m),
         )?;
-        let step_m3 = f64::from(parameters.time_step_s) * f64::from(self.effusion_m3_s);
+        let step_m3 = Scale::of(parameters).step_s * f64::from(self.effusion_m3_s);
         ParameterError::check(
             step_m3 <= MOST_FILLED * self.volume_m3(),
             "effusion-rate",
             self.effusion_m3_s,
             "would fill more than a tenth of the room above the vent in a step: widen it by `vent-radius`, or take a shorter \
-             `time-step`",
+             `time-step` or more `substeps`",
         )
     }
 
@@ -131,9 +140,7 @@ impl Vent {
             let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
             let aside_m = radius_m * share.sqrt();
             let height_m = margin_m + height * (radius_m - margin_m).max(0.0);
-            DVec3::new(x + aside_m * cosine, height_m, z + aside_m * sine)
-                .as_vec3()
-                .clamp(Vec3::ZERO, parameters.space_m)
+            DVec3::new(x + aside_m * cosine, height_m, z + aside_m * sine).as_vec3()
         };
         (0..parameters.particles).map(place).collect()
     }

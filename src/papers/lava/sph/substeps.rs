@@ -1,0 +1,74 @@
+//! Steps of the fluid in the time of a frame.
+//!
+//! Corrections push lava apart as a spring would: n of them in a step of dt give it a speed of sound c, c^2 = n h^2 / dt^2 but for a factor, and
+//! under its own weight lava of depth D is pressed together by g D / c^2. Finer particles have a smaller h; shorter steps make up for it at less
+//! cost than more corrections do, since n counts once and dt twice (Macklin et al. 2019).
+
+use super::super::parameters::Parameters;
+use super::parameters::Sides;
+
+/// Most steps of a frame.
+pub const MOST: u32 = 100;
+/// Most of g D dt^2 / (n h^2): a block that is let go is pressed together by three times as much at its foot.
+const MOST_PRESSED: f64 = 1.0 / 24.0;
+/// Most of the kernel's radius that gravity alone moves lava in a step.
+const MOST_FALLEN: f64 = 0.5;
+
+/// Steps that lava of these parameters needs, with a kernel of that radius in metres; they may be more than [`MOST`].
+pub fn needed(parameters: &Parameters, support_m: f64) -> f64 {
+    let flow = &parameters.flow;
+    let step_s = f64::from(parameters.time_step_s);
+    let fallen_m = step_s * step_s * f64::from(flow.gravity_m_s2);
+    let pressed = fallen_m * depth_m(parameters) / (f64::from(flow.corrections) * support_m * support_m);
+    let squared = (pressed / MOST_PRESSED).max(fallen_m / (MOST_FALLEN * support_m));
+    squared.sqrt().ceil().max(1.0)
+}
+
+/// Steps of a frame: those given, or those that are needed.
+pub fn of(parameters: &Parameters, support_m: f64) -> u32 {
+    parameters.flow.substeps.unwrap_or_else(|| needed(parameters, support_m).min(f64::from(MOST)) as u32)
+}
+
+/// Depth of the lava along gravity: of the block as it stands there; of what comes out of a vent the height of the room above that, or of all of
+/// it were it level.
+fn depth_m(parameters: &Parameters) -> f64 {
+    let flow = &parameters.flow;
+    let [x, y, z] = flow.block_m.as_dvec3().to_array();
+    if flow.vent.effusion_m3_s > 0.0 {
+        let floor_m2 = f64::from(parameters.space_m.x) * f64::from(parameters.space_m.z);
+        return f64::from(flow.vent.radius_m).max(x * y * z / floor_m2);
+    }
+    // A bed has no slope of its own by default; it has hills.
+    let (sine, cosine) = f64::from(flow.slope_deg(true)).to_radians().sin_cos();
+    match flow.sides {
+        Sides::Walls => x * sine + y * cosine,
+        Sides::Periodic => y * cosine,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Scale;
+    use super::*;
+    use crate::papers::lava::{Flow, Simulation};
+
+    /// As many as the root of what the column presses: finer particles, a longer step, fewer corrections.
+    #[test]
+    fn finer_particles_need_shorter_steps() {
+        let of = |particles: u32, change: &dyn Fn(&mut Parameters)| {
+            let mut parameters = Parameters { simulation: Simulation::Sph, particles, ..Parameters::default() };
+            change(&mut parameters);
+            Scale::of(&parameters).substeps
+        };
+        let as_is = |particles| of(particles, &|_| ());
+        assert_eq!([400, 4000, 40_000, 400_000].map(as_is), [1, 1, 3, 5]);
+        assert_eq!(of(4000, &|p| p.time_step_s *= 4.0), 4);
+        assert_eq!(of(4000, &|p| p.flow = Flow { corrections: 1, ..Flow::default() }), 4);
+        assert_eq!(of(4000, &|p| p.flow = Flow { gravity_m_s2: 0.0, ..Flow::default() }), 1);
+        assert_eq!(of(40_000, &|p| p.flow = Flow { substeps: Some(2), ..Flow::default() }), 2);
+        let step_s = |particles| {
+            Scale::of(&Parameters { simulation: Simulation::Sph, particles, ..Parameters::default() }).step_s
+        };
+        assert!((step_s(40_000) - 1.0 / 90.0).abs() < 1e-9);
+    }
+}
