@@ -4,7 +4,8 @@
 // Ropes (section 3.2): folds of a stiff skin over a softer inside, as long as Fink and Fletcher (1978) find. A skin that is
 // shortened along the flow keeps its length and rises; its folds lie where the lava was level with each other when its rock was laid, so
 // that they are carried and bent with it. Pieces (section 3.3): the part of the surface that lies nearest to one of the particles
-// beneath, whose borders gape as the flow stretches them and close as new crust grows.
+// beneath, whose borders gape as the flow stretches them and close as new crust grows. Toes (section 3.2): each has a skin of its own, so that
+// two of them do not run into one but meet in a seam, which glows until crust has closed it.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -31,6 +32,10 @@ layout(set = 0, binding = 8) uniform texture2D carried;
 layout(set = 0, binding = 12, rgba32f) uniform image2D heights;
 layout(set = 0, binding = 13, rgba32f) uniform image2D crust_temperatures;
 layout(set = 0, binding = 14, rgba32f) uniform image2D crust_carried;
+
+layout(set = 0, binding = 15, std430) readonly buffer Toes {
+    uint list[]; // number of each particle's
+} toes;
 
 const float STEEPEST = 1.5; // slope of a rope; beyond it a fold would overturn
 const float TURN = 6.28318531;
@@ -180,6 +185,44 @@ Piece piece_at(vec3 place_m) {
     return Piece(to_edge_m, middle.xz, particle);
 }
 
+// 1 inside a toe, 0 on the seam between two: of the lava around a place by the kernel, what the nearest particle's toe has more than all others.
+float seam_at(vec3 place_m) {
+    ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
+    int highest = int(flow.counts.y) - 1;
+    float nearest = FAR_M;
+    uint toe = 0u;
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
+            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
+            for (uint i = first; i < stretch.y; i++) {
+                vec3 way = apart(place_m - predicted.list[i].xyz);
+                float squared = dot(way, way);
+                if (squared < nearest) {
+                    nearest = squared;
+                    toe = toes.list[items.list[i].y];
+                }
+            }
+        }
+    }
+    float more = 0.0;
+    float all = 0.0;
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
+            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
+            for (uint i = first; i < stretch.y; i++) {
+                float weight = kernel(length(apart(place_m - predicted.list[i].xyz)) / flow.support_m);
+                more += toes.list[items.list[i].y] == toe ? weight : -weight;
+                all += weight;
+            }
+        }
+    }
+    return all > 0.0 ? abs(more) / all : 1.0;
+}
+
+const float CRACK = 0.2; // of what seam_at gives
+
 // The smaller blocks that a piece is a heap of, their height over the piece's own, both over its length; a place from its middle in lengths.
 const float BLOCKS = 3.0; // along a piece
 const float CREASE = 0.3; // of a block's length
@@ -251,6 +294,14 @@ void main() {
             relief_m += grown * (crust.jumble * jumbled_m - 0.25 * gap * crust.piece_m);
         }
         relief_m *= borne;
+        if (crust.seam_m > 0.0) {
+            float seam = seam_at(vec3(place_m.x, ground_m + surface.lava_m, place_m.y));
+            float aside = 1.0 - seam;
+            // Toes are round: a quarter of an ellipse down to the seam.
+            relief_m -= min(crust.seam_m, 0.8 * surface.lava_m) * (1.0 - sqrt(max(1.0 - aside * aside, 0.0)));
+            float crack = (1.0 - smoothstep(0.0, CRACK, seam)) * (1.0 - grown);
+            glowing_k = mix(glowing_k, max(glowing_k, surface.core_k), crack);
+        }
     }
     float height_m = ground_m + max(surface.lava_m + relief_m, min(surface.lava_m, 0.5 * crust.least_m));
     imageStore(heights, column, vec4(0.0, 0.0, 0.0, height_m));

@@ -11,4 +11,5 @@ layout(set = 0, binding = 11, std430) readonly buffer Crust {
     float ambient_k;
     float radiance; // of a crust's face, as in face.glsl
     float least_m; // depth of lava that bears all of the crust's relief
+    float seam_m; // depth of the seam between two toes; 0 where there are none
 } crust;

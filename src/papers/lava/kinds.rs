@@ -40,7 +40,7 @@ pub fn pahoehoe() -> Parameters {
         renewal_s: 6.0,
         heat: heat(1423.0, 12.0, 20.0, [1000.0, 12.0]),
         crust: Crust { pieces: 1.5, ..Crust::default() },
-        vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2 },
+        vent: Vent { effusion_m3_s: 0.04, middle_m: [0.4, 0.8], radius_m: 0.2, ..Vent::default() },
         ..Flow::default()
     };
     Parameters {
@@ -56,27 +56,28 @@ pub fn pahoehoe() -> Parameters {
     }
 }
 
-/// Section 3.2: the same lava under a skin that stiffens, halted by a wall.
+/// Section 3.2: the same lava under a skin that stiffens, slowed as it spreads.
 pub fn ropy() -> Parameters {
     let flow = Flow {
-        block_m: Vec3::new(0.5, 0.2, 0.6),
+        block_m: Vec3::new(1.0, 0.09, 1.0),
         viscosity_pa_s: 122.0,
-        slope_deg: Some(14.0),
-        renewal_s: 20.0,
+        slope_deg: Some(12.0),
+        renewal_s: 6.0,
         heat: heat(1423.0, 12.0, 6.0, [2500.0, 4.0]),
         crust: Crust { skin_m: 0.006, ..Crust::default() },
+        vent: Vent { effusion_m3_s: 0.011, middle_m: [0.4, 0.55], radius_m: 0.13, ..Vent::default() },
         ..Flow::default()
     };
     Parameters {
-        space_m: Vec3::new(1.2, 0.35, 0.9),
+        space_m: Vec3::new(1.5, 0.35, 1.1),
         particles: 4000,
-        radius_m: 0.05,
-        density: [96, 28, 72],
+        radius_m: 0.06,
+        density: [100, 24, 72],
         splats: [240, 180],
         splat_radius_m: 0.01,
         rock_tile_m: 0.25,
         gloss: 0.3,
-        ..basalt(Vec3::new(1.42, 0.38, 0.76), Vec3::new(0.84, 0.05, 0.34), 6.0, flow)
+        ..basalt(Vec3::new(1.43, 0.55, 0.95), Vec3::new(0.62, 0.0, 0.5), 6.0, flow)
     }
 }
 
@@ -89,7 +90,7 @@ pub fn toes() -> Parameters {
         renewal_s: 20.0,
         heat: heat(1423.0, 12.0, 10.0, [1200.0, 8.0]),
         crust: Crust { pieces: 1.5, ..Crust::default() },
-        vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13 },
+        vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13, ..Vent::default() },
         ..Flow::default()
     };
     Parameters {
@@ -115,7 +116,7 @@ pub fn aa() -> Parameters {
         renewal_s: 6.0,
         heat: heat(1323.0, 6.0, 60.0, [9000.0, 1.5]),
         crust: Crust { pieces: 1.5, jumble: 0.8, healing_s: 1.5, ..Crust::default() },
-        vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7 },
+        vent: Vent { effusion_m3_s: 1.4, middle_m: [1.2, 3.0], radius_m: 0.7, ..Vent::default() },
         ..Flow::default()
     };
     Parameters {

@@ -92,6 +92,9 @@ impl Setup {
             if self.parameters.flow.sides == Sides::Periodic {
                 return refused("a map does not repeat; choose `sides` walls");
             }
+            if self.parameters.flow.vent.toe_m3 > 0.0 {
+                return refused("where toes break out follows from the slope of a level floor; leave out `toe-volume`");
+            }
         }
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
@@ -285,11 +288,9 @@ impl Study for Setup {
             kind("pahoehoe", "Section 3.2: a thin fluid sheet that chills after a metre or two", || {
                 Setup::crusted(kinds::pahoehoe())
             }),
-            kind(
-                "ropy",
-                "Section 3.2: pahoehoe under a stiff skin, halted by a wall",
-                || Setup::crusted(kinds::ropy()),
-            ),
+            kind("ropy", "Section 3.2: pahoehoe under a stiff skin that folds as it slows", || {
+                Setup::crusted(kinds::ropy())
+            }),
             kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
                 bed: Some(HeightMapSource::Jacksboro),
                 ..Setup::crusted(kinds::toes())

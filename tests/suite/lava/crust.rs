@@ -6,7 +6,7 @@ use fumarole::gpu::Device;
 use fumarole::papers::lava::reference::{self, Columns, Texel, fold_length, fold_steepness};
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
-    Crust, Flow, Heat, Lava, Parameters, Particles, Rheology, Rock, Simulation, SurfaceKind, Variant,
+    Crust, Flow, Heat, Lava, Parameters, Particles, Rheology, Rock, Simulation, SurfaceKind, Variant, Vent,
 };
 use glam::{DVec2, DVec3, Vec3};
 
@@ -105,16 +105,27 @@ fn surface_motion_is_that_of_the_particles_around_it() {
     });
 }
 
-/// Heights and temperatures of the crust with ropes, with pieces, and with both; temperatures are the surface's in the mean.
+/// Heights and temperatures of the crust with ropes, with pieces, and with both, and of toes; temperatures are the surface's in the mean.
 #[test]
 fn the_crust_is_what_its_equations_say() {
     gpu_test(|device| {
         let ropes = Crust { skin_m: 0.03, ..Crust::default() };
         let pieces = Crust { pieces: 1.3, jumble: 0.7, healing_s: 0.4, ..Crust::default() };
-        for crust in [ropes, pieces, Crust { skin_m: 0.03, ..pieces }] {
-            let parameters = crusted(crust);
+        let cases = [
+            (ropes, 0.0),
+            (pieces, 0.0),
+            (Crust { skin_m: 0.03, ..pieces }, 0.0),
+            (Crust::default(), 0.02),
+            (pieces, 0.02),
+        ];
+        for (crust, toe_m3) in cases {
+            let mut parameters = crusted(crust);
+            if toe_m3 > 0.0 {
+                parameters.flow.vent = Vent { effusion_m3_s: 0.25, middle_m: [0.4, 0.6], radius_m: 0.3, toe_m3 };
+            }
             let lava = drawn(device, &parameters);
             let sph = lava.animate.sph().unwrap();
+            let out = lava.animate.out() as usize;
             let relief = lava.relief.as_ref().unwrap();
             let surface_temperature = lava.surface_temperature.as_ref().unwrap();
             let columns = Columns {
@@ -126,7 +137,13 @@ fn the_crust_is_what_its_equations_say() {
             };
             let items: Vec<[u32; 2]> = list(device, &sph.sort.items);
             let numbers = items.into_iter().map(|[_, number]| number);
-            let particles: Vec<(DVec3, u32)> = vectors(device, sph.arrived()).into_iter().zip(numbers).collect();
+            let particles: Vec<(DVec3, u32)> =
+                vectors(device, sph.arrived()).into_iter().zip(numbers).take(out).collect();
+            let breaks: Vec<f64> = parameters.flow.vent.toes(&parameters).iter().map(|toe| toe.first_m3).collect();
+            let toe_of =
+                |number: u32| breaks.iter().rposition(|first| *first <= f64::from(number) * 2.5e-4).unwrap_or(0) as u32;
+            let toes: Vec<u32> = (0..600).map(toe_of).collect();
+            assert_eq!(toes[out - 1] > 1, toe_m3 > 0.0);
             let Scale { spacing_m, support_m, .. } = Scale::of(&parameters);
             let oracle = reference::Crust {
                 rope: 6.463 * f64::from(crust.skin_m),
@@ -138,6 +155,8 @@ fn the_crust_is_what_its_equations_say() {
                 solidus: 1273.0,
                 ambient: 300.0,
                 least: 1.5 * spacing_m,
+                seam: if toe_m3 > 0.0 { 1.5 * spacing_m } else { 0.0 },
+                toes,
             };
             let heights = floats(texels(device, &relief.normal_height));
             let heat = floats(texels(device, &relief.temperatures));
@@ -155,16 +174,18 @@ fn the_crust_is_what_its_equations_say() {
                 }
                 compared += usize::from(heat[at][1] > 0.0);
                 // A rope's height is that of an arc, within 4 % of 1.5 / tau of its length.
-                let tolerance = 2e-4 + 0.04 * 0.24 * oracle.rope;
+                // A particle that a step moves far may have left the cells in which it is looked for, which a seam's weights feel.
+                let tolerance = 2e-4 + 0.04 * 0.24 * oracle.rope + 0.02 * oracle.seam;
+                let warmer = if oracle.seam > 0.0 { 3.0 } else { 0.5 };
                 assert!((height - expected.height).abs() < tolerance, "{place}: {height} {}", expected.height);
-                assert!((kelvin - expected.kelvin).abs() < 0.5, "{place}: {kelvin} {}", expected.kelvin);
+                assert!((kelvin - expected.kelvin).abs() < warmer, "{place}: {kelvin} {}", expected.kelvin);
                 let plain = columns.motion[at % width * 40 / width + at / width * 24 / rows * 40][3];
                 highest = highest.max((height - plain).abs());
                 coldest = coldest
                     .max((kelvin - columns.heat[at % width * 40 / width + at / width * 24 / rows * 40][0]).abs());
             }
             println!(
-                "{crust:?}: {compared} of {}, {left_out} left out, {highest} m, {coldest} K",
+                "{crust:?}, {toe_m3}: {compared} of {}, {left_out} left out, {highest} m, {coldest} K",
                 width * rows / stride
             );
             assert!(compared > 300 && left_out * 10 < width * rows / stride && highest > 0.01, "{compared} {left_out}");

@@ -43,7 +43,7 @@ fn particles_carry_the_rock_since_it_was_laid() {
 #[test]
 fn rock_comes_out_of_a_vent_unmoved() {
     gpu_test(|device| {
-        let vent = Vent { effusion_m3_s: 0.22, middle_m: [0.6, 0.6], radius_m: 0.3 };
+        let vent = Vent { effusion_m3_s: 0.22, middle_m: [0.6, 0.6], radius_m: 0.3, ..Vent::default() };
         let flow = Flow { vent, renewal_s: 100.0, ..flowing().flow };
         let parameters = Parameters { flow, ..flowing() };
         let particles = Particles::of(&parameters);

@@ -1,8 +1,8 @@
 //! Lava that comes out of a vent: counted, hot, and as far as theory has it.
 
 use fumarole::measure::Paper;
-use fumarole::papers::lava::{Flow, Heat, Inflow, Parameters, Particles, Variant, Vent};
-use glam::{DVec3, Vec3};
+use fumarole::papers::lava::{Flow, Heat, Inflow, Parameters, Particles, Rheology, Variant, Vent};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::fluid::{animate, flowing, list, run, state};
 use super::scene::{draw, read_back, texels, variant_of};
@@ -10,7 +10,7 @@ use crate::common::gpu_test;
 
 /// 600 particles that come out within 20 steps.
 fn erupting() -> Parameters {
-    let vent = Vent { effusion_m3_s: 0.22, middle_m: [0.6, 0.6], radius_m: 0.3 };
+    let vent = Vent { effusion_m3_s: 0.22, middle_m: [0.6, 0.6], radius_m: 0.3, ..Vent::default() };
     Parameters { flow: Flow { vent, ..flowing().flow }, ..flowing() }
 }
 
@@ -89,7 +89,7 @@ fn a_dome_grows_as_a_viscous_gravity_current() {
                 block_m: Vec3::new(0.4, 0.25, 0.4),
                 viscosity_pa_s: 1000.0,
                 slope_deg: Some(0.0),
-                vent: Vent { effusion_m3_s: 0.01, middle_m: [0.6, 0.6], radius_m: 0.1 },
+                vent: Vent { effusion_m3_s: 0.01, middle_m: [0.6, 0.6], radius_m: 0.1, ..Vent::default() },
                 ..Flow::default()
             },
             ..flowing()
@@ -118,6 +118,35 @@ fn a_dome_grows_as_a_viscous_gravity_current() {
     });
 }
 
+/// Toes come out where and when the law has them, each around its own middle, which leaves the break.
+#[test]
+fn toes_come_out_beside_each_other() {
+    gpu_test(|device| {
+        let heat = Heat { rheology: Rheology::Basalt, emissivity: 0.0, ..Heat::default() };
+        let vent = Vent { toe_m3: 0.01, ..erupting().flow.vent };
+        let parameters = Parameters { flow: Flow { vent, heat, ..erupting().flow }, ..erupting() };
+        let toes = vent.toes(&parameters);
+        assert!(toes.len() > 8, "{}", toes.len());
+        let mut animate = animate(device, &parameters, &Particles::of(&parameters));
+        let mut before = 0;
+        for step in 1..=20 {
+            run(device, &mut animate, 1);
+            let out = animate.out() as usize;
+            let (places, _) = state(device, &animate, out);
+            for (number, place) in places.iter().enumerate().skip(before) {
+                let out_m3 = number as f64 * 2.5e-4;
+                let toe = toes.iter().rfind(|toe| toe.first_m3 <= out_m3).unwrap();
+                let radius = ((out_m3 - toe.first_m3) * 6.0 / std::f64::consts::PI / 3.0).cbrt();
+                let middle = toe.break_m + radius * toe.way;
+                // What a step pushes apart is less than three distances of particles.
+                let aside = DVec2::new(place.x, place.z).distance(middle);
+                assert!(aside < 0.3 + 0.19, "{step}, {number}: {aside}");
+            }
+            before = out;
+        }
+    });
+}
+
 #[test]
 fn numbers_of_a_vent_that_cannot_be_are_refused() {
     let good = erupting();
@@ -133,6 +162,9 @@ fn numbers_of_a_vent_that_cannot_be_are_refused() {
         ("vent", vent(Vent { effusion_m3_s: 0.0, radius_m: 0.15, ..of })),
         ("vent-radius", vent(Vent { radius_m: 0.0, ..of })),
         ("vent-radius", vent(Vent { effusion_m3_s: 0.0, radius_m: 0.2, ..Vent::default() })),
+        ("toe-volume", vent(Vent { toe_m3: 0.01, ..Vent::default() })),
+        ("toe-volume", vent(Vent { toe_m3: 0.01, ..of })),
+        ("toe-volume", vent(Vent { toe_m3: f32::NAN, ..of })),
     ];
     for (name, parameters) in cases {
         let error = parameters.validate().expect_err(name);

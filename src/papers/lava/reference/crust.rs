@@ -24,6 +24,10 @@ pub struct Crust {
     pub ambient: f64,
     /// Depth of lava that bears all of the relief.
     pub least: f64,
+    /// Depth of the seam between two toes; 0 without any.
+    pub seam: f64,
+    /// Toe of each particle, by its number.
+    pub toes: Vec<u32>,
 }
 
 /// The surface's columns, row by row.
@@ -218,7 +222,33 @@ impl Crust {
             relief += grown * (self.jumble * jumbled - 0.25 * gap * self.piece);
         }
         let borne = (mean.depth / self.least).clamp(0.0, 1.0);
-        texel_of.height = (mean.depth + borne * relief).max(mean.depth.min(0.5 * self.least));
+        relief *= borne;
+        if self.seam > 0.0 {
+            let top = DVec3::new(place.x, mean.depth, place.y);
+            // Wendland's C2 up to its factor.
+            let weight = |place: DVec3| {
+                let q = (place.distance(top) / reach).min(1.0);
+                (1.0 - q).powi(4) * (1.0 + 4.0 * q)
+            };
+            let all = particles.iter().map(|(place, _)| weight(*place)).sum::<f64>();
+            let nearest = particles.iter().min_by(|a, b| a.0.distance(top).total_cmp(&b.0.distance(top)));
+            // Particles at the rim of the kernel may have left the cells in which they are looked for.
+            texel_of.is_uncertain |= all < 1e-2;
+            if let Some(&(_, number)) = nearest.filter(|_| all > 0.0) {
+                let toe = self.toes[number as usize];
+                let own = particles.iter().filter(|(_, number)| self.toes[*number as usize] == toe);
+                let own = own.map(|(place, _)| weight(*place)).sum::<f64>();
+                let inside = (2.0 * own / all - 1.0).abs();
+                // The fold of a quarter of an ellipse, by its angle.
+                let angle = (1.0 - inside).acos();
+                relief -= self.seam.min(0.8 * mean.depth) * (1.0 - angle.sin());
+                let share = (inside / 0.2).min(1.0);
+                let crack = (1.0 - share * share * (3.0 - 2.0 * share)) * (1.0 - grown);
+                let core = mean.motion[2].max(texel_of.kelvin);
+                texel_of.kelvin += crack * (core - texel_of.kelvin);
+            }
+        }
+        texel_of.height = (mean.depth + relief).max(mean.depth.min(0.5 * self.least));
         texel_of
     }
 }

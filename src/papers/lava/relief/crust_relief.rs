@@ -1,4 +1,4 @@
-//! Pass `crust-relief` (sections 3.2 and 3.3): ropes and pieces of the crust, their temperatures and the rock on them. Ours.
+//! Pass `crust-relief` (sections 3.2 and 3.3): ropes, pieces and seams of the crust, their temperatures and the rock on them. Ours.
 
 use std::sync::Arc;
 
@@ -6,7 +6,8 @@ use super::super::sph::{Sph, over_cells};
 use super::super::targets::Context;
 use crate::gpu::{Buffer, Error, ImageView, Pass};
 
-/// Makes the pass from the surface's motion, temperatures and carried rock to heights, temperatures and carried rock of the crust.
+/// Makes the pass from the surface's motion, temperatures and carried rock to heights, temperatures and carried rock of the crust; `toes` has
+/// the number of each particle's.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -14,7 +15,7 @@ pub fn crust_relief(
     context: Context<'_>,
     sph: &Sph,
     [motion, temperatures, carried]: [&Arc<ImageView>; 3],
-    crust: &Arc<Buffer>,
+    [crust, toes]: [&Arc<Buffer>; 2],
     [heights, crust_temperatures, crust_carried]: [&Arc<ImageView>; 3],
 ) -> Result<Pass, Error> {
     over_cells("crust-relief", "lava/crust-relief.comp", &sph.sort)
@@ -25,6 +26,7 @@ pub fn crust_relief(
         .with("temperatures", temperatures)
         .with("carried", carried)
         .with("crust", crust)
+        .with("toes", toes)
         .with("heights", heights)
         .with("crust_temperatures", crust_temperatures)
         .with("crust_carried", crust_carried)

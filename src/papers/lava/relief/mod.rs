@@ -1,4 +1,5 @@
-//! The crust of a fluid's surface in more detail than its particles have (chapter 3): ropes, and pieces with gaps between them. Ours.
+//! The crust of a fluid's surface in more detail than its particles have (chapter 3): ropes, pieces with gaps between them, and seams between
+//! toes. Ours.
 //!
 //! ```text
 //! surface-temperature ─► surface-motion ─► crust-relief ─► crust-normals ─► stage three
@@ -17,13 +18,17 @@ use self::crust_relief::crust_relief;
 use self::surface_motion::surface_motion;
 use super::sph::crust::stiffness;
 use super::sph::surface_temperature::SurfaceTemperature;
+use super::sph::toes::toe_of;
 use super::sph::{FlowConstants, Scale, Sph};
 use super::targets::{Context, FLOATS};
+use crate::gpu::transfer::upload_each;
 use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Pass};
 use crate::host_block;
 
 /// Depth of lava that bears all of the relief, in distances of particles.
 const LEAST_DEPTH: f64 = 1.5;
+/// Depth of the seam between two toes, likewise.
+const SEAM_DEPTH: f64 = 1.5;
 
 host_block! {
     struct CrustConstants {
@@ -37,6 +42,7 @@ host_block! {
         ambient_k: f32,
         radiance: f32,
         least_m: f32,
+        seam_m: f32,
     }
 }
 
@@ -84,6 +90,11 @@ impl Relief {
                 .view()
         };
         let spacing_m = Scale::of(parameters).spacing_m;
+        let toes = flow.vent.toes(parameters);
+        let toe_of = |particle: usize| toe_of(&toes, particle as f64 * spacing_m.powi(3));
+        let (name, usage) = (context.name("toes"), vk::BufferUsageFlags::STORAGE_BUFFER);
+        let toe_of_each = upload_each(context.device(), &name, usage, parameters.particles as usize, toe_of)
+            .map_err(|error| error.set_by("particles"))?;
         let constants = CrustConstants {
             rope_m: flow.crust.rope_m(stiffness(flow)) as f32,
             piece_m: flow.crust.piece_m(spacing_m) as f32,
@@ -95,6 +106,7 @@ impl Relief {
             ambient_k: heat.ambient_k,
             radiance: heat.crust_radiance(spacing_m) as f32,
             least_m: (LEAST_DEPTH * spacing_m) as f32,
+            seam_m: if toes.is_empty() { 0.0 } else { (SEAM_DEPTH * spacing_m) as f32 },
         };
         let crust = context.upload("crust", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&constants))?;
         let motion = stored("surface-motion", 1)?;
@@ -105,7 +117,13 @@ impl Relief {
         let coarse = [&motion, &surface_temperature.temperatures, &surface_temperature.carried];
         Ok(Some(Relief {
             surface_motion: surface_motion(context, sph, surface, &motion)?,
-            crust_relief: crust_relief(context, sph, coarse, &crust, [&heights, &temperatures, &carried])?,
+            crust_relief: crust_relief(
+                context,
+                sph,
+                coarse,
+                [&crust, &toe_of_each],
+                [&heights, &temperatures, &carried],
+            )?,
             crust_normals: crust_normals(context, &heights, &normal_height)?,
             flow: sph.constants,
             sides: SideConstants { space_m: [parameters.space_m.x, parameters.space_m.z] },

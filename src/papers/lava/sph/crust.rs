@@ -10,6 +10,8 @@ use crate::measure::parameter::{Cost, Parameter, Range};
 /// Columns of the crust's grid along a rope's and a piece's length, at least.
 const COLUMNS_A_ROPE: f64 = 12.0;
 const COLUMNS_A_PIECE: f64 = 6.0;
+/// Along a distance of particles, over which one toe meets another.
+const COLUMNS_A_SEAM: f64 = 4.0;
 /// Along the three blocks that a jumbled piece is a heap of.
 const COLUMNS_A_JUMBLED_PIECE: f64 = 12.0;
 /// Most columns of the crust along one of the surface's.
@@ -70,8 +72,8 @@ impl Crust {
         3.55 * f64::from(self.skin_m) * stiffness.powf(0.2)
     }
 
-    /// True of a crust that has relief.
-    pub fn is_there(&self) -> bool {
+    /// True of a crust that has relief of its own.
+    fn is_there(&self) -> bool {
         self.skin_m > 0.0 || self.pieces > 0.0
     }
 
@@ -80,9 +82,12 @@ impl Crust {
         f64::from(self.pieces) * spacing_m
     }
 
-    /// Columns of the crust's grid for one of the surface's: none without relief.
+    /// Columns of the crust's grid for one of the surface's: none without relief of its own and seams between toes.
     pub fn detail(&self, parameters: &Parameters) -> Option<u32> {
+        let seam_m =
+            if parameters.flow.vent.toe_m3 > 0.0 { parameters.flow.spacing_m(parameters.particles) } else { 0.0 };
         let needed = [
+            (seam_m, COLUMNS_A_SEAM),
             (self.rope_m(stiffness(&parameters.flow)), COLUMNS_A_ROPE),
             (
                 self.piece_m(parameters.flow.spacing_m(parameters.particles)),
@@ -115,12 +120,12 @@ impl Crust {
                 "changes nothing without `pieces`",
             )?;
         }
-        let is_grown = !self.is_there() || heat.solidus_k < heat.melt_k;
+        let is_grown = !(self.is_there() || parameters.flow.vent.toe_m3 > 0.0) || heat.solidus_k < heat.melt_k;
         ParameterError::check(
             is_grown,
             "solidus",
             heat.solidus_k,
-            "must be below the `melt-temperature` for `skin` or `pieces`: crust grows between them",
+            "must be below the `melt-temperature` for `skin`, `pieces` or `toe-volume`: crust grows between them",
         )?;
         let range = "must be 0, or 1 to 1.5 distances of particles";
         ParameterError::check(self.pieces == 0.0 || self.pieces >= 1.0, "pieces", self.pieces, range)?;
@@ -131,7 +136,8 @@ impl Crust {
         );
         let ropes = ("skin", self.skin_m, Crust { pieces: 0.0, ..*self });
         let pieces = ("pieces", self.pieces, Crust { skin_m: 0.0, ..*self });
-        [ropes, pieces].into_iter().try_for_each(|(name, value, alone)| {
+        let seams = ("toe-volume", parameters.flow.vent.toe_m3, Crust { skin_m: 0.0, pieces: 0.0, ..*self });
+        [seams, ropes, pieces].into_iter().try_for_each(|(name, value, alone)| {
             let is_held = alone.detail(parameters).is_none_or(|detail| detail <= MOST_DETAIL);
             ParameterError::check(is_held, name, value, &problem)
         })

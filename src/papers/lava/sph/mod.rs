@@ -40,6 +40,7 @@ mod sph_viscosity;
 pub mod start;
 pub mod substeps;
 pub mod surface_temperature;
+pub mod toes;
 pub mod vent;
 
 use std::sync::Arc;

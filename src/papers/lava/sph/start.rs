@@ -60,7 +60,7 @@ mod tests {
     fn no_particle_starts_nearer_to_a_wall_than_it_may_come() {
         let sph = Parameters { simulation: Simulation::Sph, particles: 300, ..Parameters::default() };
         let flow = |flow: Flow| Parameters { flow, ..sph.clone() };
-        let vent = Vent { effusion_m3_s: 0.01, middle_m: [0.15, 0.15], radius_m: 0.15 };
+        let vent = Vent { effusion_m3_s: 0.01, middle_m: [0.15, 0.15], radius_m: 0.15, ..Vent::default() };
         let thin = flow(Flow { block_m: Vec3::new(0.001, 1.0, 1.0), ..Flow::default() });
         let erupting = flow(Flow { vent, ..Flow::default() });
         for parameters in [sph.clone(), thin, erupting] {

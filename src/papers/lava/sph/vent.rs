@@ -1,9 +1,11 @@
 //! Lava that comes out of a vent (chapter 9, "Improved particle simulation"), particle by particle from the pool.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::super::parameters::Parameters;
 use super::Scale;
+use super::heat::Rheology;
+use super::toes::{MOST_TOES, Toe, toe_of, toes};
 use crate::field;
 use crate::measure::ParameterError;
 use crate::measure::parameter::{Cost, Parameter, Range};
@@ -21,11 +23,13 @@ pub struct Vent {
     pub middle_m: [f32; 2],
     /// Its radius in metres, above 0 and at most 1000.
     pub radius_m: f32,
+    /// Mean volume of the toes that lava breaks out as, cubic metres, 0 to 1000; at 0 all of it comes out at the vent.
+    pub toe_m3: f32,
 }
 
 impl Default for Vent {
     fn default() -> Self {
-        Vent { effusion_m3_s: 0.0, middle_m: [0.5, 0.5], radius_m: 0.15 }
+        Vent { effusion_m3_s: 0.0, middle_m: [0.5, 0.5], radius_m: 0.15, toe_m3: 0.0 }
     }
 }
 
@@ -86,6 +90,12 @@ impl Vent {
                 .help("With an effusion rate: radius of the vent, and height of the room above it where lava comes out")
                 .section("9")
                 .cost(Cost::Buffers),
+            Parameter::new("toe-volume", field!(Vent.toe_m3))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("cubic metres")
+                .help("With an effusion rate and basalt: mean volume of a toe, whose skin then holds, so that lava breaks out beside it; at 0 all comes out at the vent")
+                .section("3.2")
+                .cost(Cost::Buffers),
         ]
     }
 
@@ -99,6 +109,7 @@ impl Vent {
             let [x, z] = self.middle_m;
             let problem = "does nothing without an `effusion-rate`";
             ParameterError::check(self.middle_m == default.middle_m, "vent", format!("{x},{z}"), problem)?;
+            ParameterError::check(self.toe_m3 == default.toe_m3, "toe-volume", self.toe_m3, problem)?;
             return ParameterError::check(self.radius_m == default.radius_m, "vent-radius", self.radius_m, problem);
         }
         let space = parameters.space_m;
@@ -117,7 +128,30 @@ impl Vent {
             self.effusion_m3_s,
             "would fill more than a tenth of the room above the vent in a step: widen it by `vent-radius`, or take a shorter \
              `time-step` or more `substeps`",
+        )?;
+        let is_basalt = self.toe_m3 == 0.0 || parameters.flow.heat.rheology == Rheology::Basalt;
+        ParameterError::check(is_basalt, "toe-volume", self.toe_m3, "needs a skin, which only `rheology` basalt has")?;
+        let block_m3 = parameters.flow.block_m.as_dvec3().element_product();
+        ParameterError::check(
+            block_m3 <= MOST_TOES * f64::from(self.toe_m3) || self.toe_m3 == 0.0,
+            "toe-volume",
+            self.toe_m3,
+            &format!(
+                "must be at least {} cubic metres, so that the `block` is no more than {MOST_TOES} toes",
+                block_m3 / MOST_TOES
+            ),
         )
+    }
+
+    /// Toes of all lava, the first of which stays over the vent; none without a volume of theirs. They know the floor's slope, and no bed.
+    pub fn toes(&self, parameters: &Parameters) -> Vec<Toe> {
+        let flow = &parameters.flow;
+        if self.effusion_m3_s == 0.0 || self.toe_m3 == 0.0 {
+            return Vec::new();
+        }
+        let fall = f64::from(flow.slope_deg(true)).to_radians().tan();
+        let sides_m = DVec2::new(parameters.space_m.x.into(), parameters.space_m.z.into());
+        toes(self, flow.block_m.as_dvec3().element_product(), fall, sides_m, parameters.seed)
     }
 
     /// Of the vent, in which lava comes out: a cylinder as high as its radius.
@@ -134,8 +168,16 @@ impl Vent {
         let first = DVec3::from_array([(); 3].map(|()| f64::from(random.unit())));
         let step = DVec3::new(1.0 / G, 1.0 / (G * G), 1.0 / (G * G * G));
         let radius_m = f64::from(self.radius_m);
-        let [x, z] = self.middle_m.map(f64::from);
+        let toes = self.toes(parameters);
+        let vent_m = DVec2::from(self.middle_m.map(f64::from));
+        let particle_m3 = parameters.flow.spacing_m(parameters.particles).powi(3);
+        let middle_m = |number: u32| {
+            let out_m3 = f64::from(number) * particle_m3;
+            let toe = toes.get(toe_of(&toes, out_m3) as usize);
+            toe.map_or(vent_m, |toe| toe.middle_m(out_m3 - toe.first_m3))
+        };
         let place = |number: u32| {
+            let DVec2 { x, y: z } = middle_m(number);
             let DVec3 { x: turn, y: height, z: share } = (first + f64::from(number) * step).fract();
             let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
             let aside_m = radius_m * share.sqrt();
