@@ -81,29 +81,28 @@ pub fn ropy() -> Parameters {
     }
 }
 
-/// Section 3.2: the same lava, slow, under a crust.
+/// Section 3.2: lava of 1,100 degrees Celsius, slow, that breaks out of its skin as toe after toe.
 pub fn toes() -> Parameters {
     let flow = Flow {
-        block_m: Vec3::new(0.5, 0.2, 0.8),
-        viscosity_pa_s: 122.0,
-        slope_deg: Some(4.0),
+        block_m: Vec3::new(0.3, 0.2, 0.45),
+        viscosity_pa_s: 317.0,
+        slope_deg: Some(5.0),
         renewal_s: 20.0,
-        heat: heat(1423.0, 12.0, 10.0, [1200.0, 8.0]),
-        crust: Crust { pieces: 1.5, ..Crust::default() },
-        vent: Vent { effusion_m3_s: 0.006, middle_m: [0.3, 0.7], radius_m: 0.13, ..Vent::default() },
+        heat: heat(1373.0, 12.0, 10.0, [2200.0, 8.0]),
+        vent: Vent { effusion_m3_s: 0.002, middle_m: [0.3, 0.6], radius_m: 0.07, toe_m3: 0.003 },
         ..Flow::default()
     };
     Parameters {
-        space_m: Vec3::new(1.8, 0.4, 1.4),
-        particles: 4000,
-        radius_m: 0.06,
-        density: [90, 20, 70],
+        space_m: Vec3::new(1.6, 0.3, 1.2),
+        particles: 3000,
+        radius_m: 0.055,
+        density: [96, 18, 72],
         splats: [270, 210],
         splat_radius_m: 0.012,
         rock_tile_m: 0.5,
         time_step_s: 1.0 / 20.0,
         gloss: 0.3,
-        ..basalt(Vec3::new(1.8, 0.85, 1.4), Vec3::new(0.65, 0.0, 0.65), 6.0, flow)
+        ..basalt(Vec3::new(1.5, 0.7, 1.2), Vec3::new(0.6, 0.0, 0.58), 6.0, flow)
     }
 }
 

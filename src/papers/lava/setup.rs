@@ -291,9 +291,8 @@ impl Study for Setup {
             kind("ropy", "Section 3.2: pahoehoe under a stiff skin that folds as it slows", || {
                 Setup::crusted(kinds::ropy())
             }),
-            kind("toes", "Section 3.2: slow pahoehoe under a crust, on uneven land", || Setup {
-                bed: Some(HeightMapSource::Jacksboro),
-                ..Setup::crusted(kinds::toes())
+            kind("toes", "Section 3.2: slow pahoehoe that breaks out of its skin as toe after toe", || {
+                Setup::crusted(kinds::toes())
             }),
             kind("aa", "Section 3.3: thicker, more viscous and yet faster", || Setup::crusted(kinds::aa())),
         ]

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use fumarole::gpu::Device;
 use fumarole::measure::study::Study;
 use fumarole::papers::lava::setup::Setup;
-use fumarole::papers::lava::{Bed, Parameters, Particles};
-use fumarole::scene::HeightMapSource;
+use fumarole::papers::lava::{Parameters, Particles};
 use glam::DVec2;
 
 use super::fluid::{animate, list, run, state};
@@ -14,6 +13,8 @@ use crate::common::gpu_test;
 
 /// Of a flow after two seconds.
 struct Measured {
+    /// Its front from the vent or the corner in which its block stood, metres.
+    front: f64,
     /// Way of its front in the last one, metres.
     advance: f64,
     /// Volume over covered area, metres.
@@ -27,14 +28,8 @@ fn measured(device: &Arc<Device>, name: &str) -> Measured {
     let preset = Setup::presets().into_iter().find(|preset| preset.name == name).unwrap();
     let parameters = Parameters { particles: 900, ..(preset.setup)().parameters };
     let spacing = parameters.flow.spacing_m(900);
-    let bed = match (preset.setup)().bed {
-        None => Bed::level(),
-        Some(source) => {
-            assert_eq!((name, &source), ("toes", &HeightMapSource::Jacksboro));
-            Bed::of(&source.load().unwrap(), parameters.space_m, spacing)
-        }
-    };
-    let mut animate = animate(device, &parameters, &Particles::of(&parameters).over(bed));
+    assert!((preset.setup)().bed.is_none());
+    let mut animate = animate(device, &parameters, &Particles::of(&parameters));
     let vent = parameters.flow.vent;
     let from = if vent.effusion_m3_s > 0.0 { DVec2::from(vent.middle_m.map(f64::from)) } else { DVec2::ZERO };
     let steps = (1.0 / parameters.time_step_s).round() as u32;
@@ -53,6 +48,7 @@ fn measured(device: &Arc<Device>, name: &str) -> Measured {
     let skin = heat.iter().take(animate.out() as usize).filter(|heat| heat[1] > 0.0);
     let (count, sum) = skin.fold((0.0, 0.0), |(count, sum), heat| (count + 1.0, sum + f64::from(heat[0])));
     Measured {
+        front: fronts[1],
         advance: fronts[1] - fronts[0],
         thickness: f64::from(animate.out()) * spacing.powi(3) / (squares.len() as f64 * (1.5 * spacing).powi(2)),
         chilled: sum / count - f64::from(parameters.flow.heat.melt_k),
@@ -65,12 +61,16 @@ fn kinds_flow_as_chapter_3_tells() {
     gpu_test(|device| {
         let [pahoehoe, ropy, toes, aa] = ["pahoehoe", "ropy", "toes", "aa"].map(|name| {
             let found = measured(device, name);
-            println!("{name}: {} m/s, {} m thick, {} K", found.advance, found.thickness, found.chilled);
+            println!(
+                "{name}: {} m far, {} m/s, {} m thick, {} K",
+                found.front, found.advance, found.thickness, found.chilled
+            );
             assert!(found.chilled < -5.0, "{name}: {}", found.chilled);
             found
         });
         assert!(pahoehoe.thickness < 0.2 && ropy.thickness < 0.2 && toes.thickness < pahoehoe.thickness);
         assert!(aa.thickness > 3.0 * pahoehoe.thickness && aa.advance > 2.0 * pahoehoe.advance);
-        assert!(toes.advance < 0.6 * pahoehoe.advance && toes.advance > 0.0);
+        // Toes advance in leaps, each where the skin breaks.
+        assert!(toes.front < 0.6 * pahoehoe.front && toes.front > 0.07);
     });
 }
