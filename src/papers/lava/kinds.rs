@@ -77,7 +77,7 @@ pub fn ropy() -> Parameters {
         splat_radius_m: 0.01,
         rock_tile_m: 0.25,
         gloss: 0.3,
-        ..basalt(Vec3::new(1.43, 0.55, 0.95), Vec3::new(0.62, 0.0, 0.5), 6.0, flow)
+        ..basalt(Vec3::new(1.58, 0.6, 1.08), Vec3::new(0.62, 0.0, 0.5), 6.0, flow)
     }
 }
 
