@@ -65,7 +65,7 @@ fn a_flow_down_a_plane_spreads_as_lubrication_theory_says() {
                 block_m: Vec3::new(0.4, 0.2, 0.4),
                 viscosity_pa_s: 300.0,
                 slope_deg: Some(45.0),
-                vent: Vent { effusion_m3_s: 0.0064, middle_m: VENT, radius_m: 0.075 },
+                vent: Vent { effusion_m3_s: 0.0064, middle_m: VENT, radius_m: 0.075, ..Vent::default() },
                 ..Flow::default()
             },
             ..flowing()
@@ -111,7 +111,7 @@ fn a_dome_cools_as_it_spreads() {
                 block_m: Vec3::new(0.4, 0.25, 0.4),
                 viscosity_pa_s: 1000.0,
                 slope_deg: Some(0.0),
-                vent: Vent { effusion_m3_s: 0.01, middle_m: [0.6, 0.6], radius_m: 0.1 },
+                vent: Vent { effusion_m3_s: 0.01, middle_m: [0.6, 0.6], radius_m: 0.1, ..Vent::default() },
                 heat,
                 ..Flow::default()
             },

@@ -13,8 +13,7 @@ use crate::scene::random::Random;
 pub fn particles(parameters: &Parameters) -> Particles {
     let Flow { vent, heat, .. } = &parameters.flow;
     let margin_m = Scale::of(parameters).margin_m;
-    let mut positions =
-        if vent.effusion_m3_s > 0.0 { vent.places(parameters, margin_m) } else { block(parameters) };
+    let mut positions = if vent.effusion_m3_s > 0.0 { vent.places(parameters, margin_m) } else { block(parameters) };
     // Off the walls by as much as every step keeps them: nearer, a wall would drag more than the viscosity's iterations take.
     let low_m = Vec3::splat(margin_m as f32).min(0.5 * parameters.space_m);
     for place in &mut positions {
