@@ -62,8 +62,9 @@ float signed_area(vec4 ab, vec4 cd) {
 }
 
 Footprint footprint_of(uint triangle) {
-    uvec3 corner = triangle_at(triangle).vertices;
-    uint object = triangle_at(triangle).object;
+    Triangle drawn = triangle_at(triangle);
+    uvec3 corner = drawn.vertices;
+    uint object = drawn.object;
     vec3 offset = objects[object].offset_m;
     Footprint seen = polygon_of(to_view(vertices[corner.x].position + offset),
         to_view(vertices[corner.y].position + offset), to_view(vertices[corner.z].position + offset));

@@ -19,15 +19,9 @@ struct Color {
     uint blue_opacity; // a half float; opacity in steps of 1/65535, so that opaque is exactly 1
 };
 
-// A section of gas, which the volume rendering adds to a pixel's list; of a full mask.
-struct Section {
-    float near_m; // depths
-    float far_m;
-    float increments; // of the march; a whole number
-    uint next; // fragment or NONE
-    vec3 color; // premultiplied, linear RGB
-    float transparency;
-};
+// A section of gas, which the volume rendering adds to a pixel's list; of a full mask. It is two vectors: its depths, near and
+// far, the increments of its march, a whole number, and what is next, a fragment or NONE; and its colour, premultiplied linear
+// RGB, and transparency.
 
 // What `sort` finds of a pixel, and what `volume` counts.
 struct Pixel {

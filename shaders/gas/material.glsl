@@ -1,4 +1,4 @@
-// What shading knows of a pixel's fragments.
+// A pixel's fragments as shading knows them.
 
 layout(set = 0, binding = 6, std430) readonly buffer Objects {
     uvec4 object_words[]; // six of each Object, see object.glsl
@@ -37,7 +37,7 @@ Color color_at(uint fragment) {
     return Color(color.x, color.y);
 }
 
-// What an object is made of, as far as shading asks for it.
+// Of an object, as far as shading asks for it.
 struct Material {
     vec3 checker_color;
     float checker_edge_m;

@@ -9,7 +9,7 @@ layout(set = 0, binding = 8, std430) readonly buffer Links {
 };
 
 layout(set = 0, binding = 13, std430) readonly buffer Sections {
-    uvec4 sections[]; // each two of a Section
+    uvec4 sections[]; // two of each section of gas
 };
 
 // Read as one vector: a load for each member made `resolve` a fifth slower on lavapipe.

@@ -87,7 +87,6 @@ void main() {
             float own = seen_opacity(at_node, material.fade_m, depth_m, end_m);
             float taken = transmittance * own;
             // The fraction of this fragment that shows its neighbour instead.
-            float fraction = 0.0;
             uint behind = fragment_at(link.next);
             Link next = Link(NONE, 0u, 0.0, 0.0);
             float overlap = 0.0;
@@ -95,15 +94,11 @@ void main() {
                 next = link_at(behind);
                 overlap = fraction_behind(link, next);
             }
-            if (overlap > 0.0) {
-                uint object = surfaces[behind].y;
-                float fade_m = uintBitsToFloat(object_words[6u * object + 3u].w);
-                float shown = overlap * seen_opacity(color_at(behind), fade_m, mean_depth(next), end_m);
-                if (shown > 0.0 && object != surface.object) {
-                    bool is_there = (next.mask & bit) != 0u;
-                    fraction = is_there ? shown : 0.0;
-                    narrowed &= is_there ? next.mask : ~next.mask;
-                }
+            float fraction = shown_behind(behind, overlap, next, surface.object, end_m);
+            if (fraction > 0.0) {
+                bool is_there = (next.mask & bit) != 0u;
+                fraction = is_there ? fraction : 0.0;
+                narrowed &= is_there ? next.mask : ~next.mask;
             }
             uint count = fraction > 0.0 ? 2u : 1u;
             vec3 light = vec3(0.0);

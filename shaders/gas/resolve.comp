@@ -108,7 +108,6 @@ void main() {
             float depth_m = mean_depth(link);
             float own = seen_opacity(at_node, material.fade_m, depth_m, end_m);
             // The fraction of this fragment that shows its neighbour instead.
-            float fraction = 0.0;
             uint behind = fragment_at(link.next);
             Link next = Link(NONE, 0u, 0.0, 0.0);
             float overlap = 0.0;
@@ -116,12 +115,7 @@ void main() {
                 next = link_at(behind);
                 overlap = fraction_behind(link, next);
             }
-            if (overlap > 0.0) {
-                uint object = surfaces[behind].y;
-                float fade_m = uintBitsToFloat(object_words[6u * object + 3u].w);
-                float shown = overlap * seen_opacity(color_at(behind), fade_m, mean_depth(next), end_m);
-                fraction = object != surface.object ? shown : 0.0;
-            }
+            float fraction = shown_behind(behind, overlap, next, surface.object, end_m);
             Clear part = within(clear, link.mask);
             float seen = sum_of(part) * own;
             float shared_with_next = sum_of(within(part, next.mask)) * own * fraction;

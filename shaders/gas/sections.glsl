@@ -17,7 +17,7 @@ layout(set = 0, binding = 12, std430) buffer Pixels {
 };
 
 layout(set = 0, binding = 13, std430) buffer Sections {
-    uvec4 sections[]; // each two of a Section
+    uvec4 sections[]; // two of each section of gas
 };
 
 #include "gas/lattice.glsl"

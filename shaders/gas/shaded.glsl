@@ -1,5 +1,17 @@
 // Light of a surface, by what material.glsl knows of it.
 
+// Opacity of what shows of the fragment behind in place of one of this object; 0 where they do not overlap, and where both are
+// of one object.
+float shown_behind(uint behind, float overlap, Link next, uint object, float end_m) {
+    if (overlap <= 0.0) {
+        return 0.0;
+    }
+    uint other = surfaces[behind].y;
+    float fade_m = uintBitsToFloat(object_words[6u * other + 3u].w);
+    float shown = overlap * seen_opacity(color_at(behind), fade_m, mean_depth(next), end_m);
+    return other != object ? shown : 0.0;
+}
+
 // Light that fragment f sends to the eye, per opacity. The highlight is Phong's.
 vec3 shaded(uint f, Surface surface, Material material, vec3 color, float depth_m, vec3 ray) {
     vec3 point = frame.eye + ray * depth_m;

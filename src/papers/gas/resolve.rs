@@ -71,7 +71,7 @@ impl Resolve {
                 .constants::<BandConstants>()
                 .build(context.shaders)
         };
-        let (pass, rest) = (pass_of("resolve")?, pass_of("resolve-rest")?);
+        let [pass, rest] = Pass::steps([pass_of("resolve")?, pass_of("resolve-rest")?]);
         Ok(Resolve { radiance, pass, rest })
     }
 

@@ -126,7 +126,7 @@ impl Sweep {
             let at_cell = if (0..last).contains(&cell[axis]) { 1.0 } else { lengths[axis].0 };
             match is_point {
                 _ if lengths[axis].1 < wanted => last + 1,
-                true => ((wanted - at_cell).ceil() as i32 - 1).clamp(0, last + 1),
+                true => ((wanted - at_cell).ceil() as i32).saturating_sub(1).clamp(0, last + 1),
                 false => 0,
             }
         });
@@ -199,7 +199,13 @@ mod tests {
     fn extents_hold_their_entries() {
         let size = 9;
         let lights = [point(0.3, -0.2, 0.6), point(3.0, 0.1, -4.0), point(2.0, 5.0, 3.0), point(1.0, 1.0, 1.0)];
-        let sides = [parallel(1.0, 0.2, 0.0), parallel(0.1, -1.0, 0.3), parallel(0.0, 0.0, 1.0), point(0.1, 9.0, 0.2)];
+        let sides = [
+            parallel(1.0, 0.2, 0.0),
+            parallel(0.1, -1.0, 0.3),
+            parallel(0.0, 0.0, 1.0),
+            point(0.1, 9.0, 0.2),
+            point(0.3, 1e12, 0.2),
+        ];
         let slanted = [point(2.2, 0.4, 3.0), point(-3.0, -2.2, 0.2), point(0.3, 1.5, -0.4)];
         for light in lights.into_iter().chain(sides).chain(slanted) {
             let sweep = Sweep::new(&default_volume(), &light, size, 0, 0);
