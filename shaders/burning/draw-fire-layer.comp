@@ -26,7 +26,7 @@ layout(set = 0, binding = 120, rgba16f) uniform writeonly image2D fire_layer;
 layout(set = 0, binding = 120, rgba16f) uniform image2D fire_layer;
 #endif
 
-// What the picture asks of each pixel: two halves of 16 bits each, and the distance of the mesh.
+// Of each pixel, for the picture: two halves of 16 bits each, and the distance of the mesh.
 layout(set = 0, binding = 121, rgba32ui) uniform writeonly uimage2D fire_texels;
 
 layout(set = 0, binding = 114, std430) buffer Tiles {
@@ -43,7 +43,7 @@ vec4 start(ivec2 pixel) {
 #ifdef START_CLEAR
     return vec4(0.0);
 #else
-    return imageLoad(fire_layer, pixel);
+    return imageLoad(fire_layer, min(pixel, ivec2(billboards.layer_size) - 1));
 #endif
 }
 
@@ -60,10 +60,25 @@ struct Square {
     float own; // a random number
 };
 
-Square square_of(ivec2 record) {
+const uint NONE = 0xffffffffu;
+const float FARTHEST = 1.0e30; // beyond all that is drawn
+
+// Of no particle, whatever lies in the records: a square behind everything.
+Square square_of(uint slot) {
+    bool is_there = slot != NONE;
+    ivec2 record = record_at(is_there ? slot : 0u);
     vec4 place = texelFetch(records, record, 0);
     vec4 own = texelFetch(records, record + ivec2(0, 1), 0);
+    place = is_there ? place : vec4(0.0);
+    own = is_there ? own : vec4(FARTHEST, vec3(0.0));
     return Square(place.xy, place.zw, own.x, own.y, own.z);
+}
+
+// Of smoke, and its opacity.
+vec4 color_of(uint slot) {
+    bool is_there = slot != NONE;
+    vec4 color = texelFetch(records, record_at(is_there ? slot : 0u) + ivec2(0, 2), 0);
+    return is_there ? color : vec4(0.0);
 }
 
 // Of a square the share that shows at a place of it, before a mesh at this distance.
@@ -82,9 +97,6 @@ vec4 shining(Square square, vec2 pixel, float mesh) {
     vec2 at = (pixel - square.center) * square.inverse;
     return vec4(shown(square, at, WIDEST, mesh) * fire(at, square.age, square.own), 0.0);
 }
-
-const uint NONE = 0xffffffffu;
-const float FARTHEST = 1.0e30; // beyond all that is drawn
 
 // The particles that reach a tile, one after the other.
 struct Walk {
@@ -154,11 +166,8 @@ void main() {
     // loop's body once more than it is asked for.
     Walk walk = walk_of(0u, lines, true);
     do {
-        bool is_there = walk.slot != NONE;
-        ivec2 record = record_at(is_there ? walk.slot : 0u);
-        Square square = square_of(record);
-        vec4 color = texelFetch(records, record + ivec2(0, 2), 0);
-        color.a = is_there ? color.a : 0.0;
+        Square square = square_of(walk.slot);
+        vec4 color = color_of(walk.slot);
         sum0 = covered(sum0, square, color, pixel, mesh0);
         sum1 = covered(sum1, square, color, pixel + down, mesh1);
         sum2 = covered(sum2, square, color, pixel + 2.0 * down, mesh2);
@@ -171,8 +180,7 @@ void main() {
     } while (walk.slot != NONE);
     walk = walk_of(0u, lines, false);
     do {
-        Square square = square_of(record_at(walk.slot != NONE ? walk.slot : 0u));
-        square.eye_depth = walk.slot != NONE ? square.eye_depth : FARTHEST;
+        Square square = square_of(walk.slot);
         sum0 += shining(square, pixel, mesh0);
         sum1 += shining(square, pixel + down, mesh1);
         sum2 += shining(square, pixel + 2.0 * down, mesh2);

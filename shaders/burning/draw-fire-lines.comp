@@ -58,7 +58,8 @@ void main() {
     ivec2 low = max(ivec2(ceil(clamp(center - reach, vec2(0.0), size))), ivec2(0));
     ivec2 high = min(ivec2(floor(clamp(center + reach, vec2(-1.0), size - 1.0))), ivec2(size) - 1);
     bool is_there = slot < CHUNK && in_pool < (is_smoke ? constants.smoke_pool : constants.fire_pool);
-    bool is_seen = middle.w > 0.0 && middle.z >= 0.0 && middle.z <= middle.w && min(reach.x, reach.y) > 0.0;
+    // Smaller squares meet no pixel's middle, and places in them have no number.
+    bool is_seen = middle.w > 0.0 && middle.z >= 0.0 && middle.z <= middle.w && min(reach.x, reach.y) > 1.0e-3;
     if (!is_there || !is_seen || p.life_ticks <= 0.0 || any(greaterThan(low, high))) {
         return;
     }
