@@ -143,6 +143,11 @@ bool is_kept(uint particle) {
     return evenly(particle) < crust.kept;
 }
 
+// Of a stretch the upper ones, near the surface: pieces and seams take two walks each through nine stretches.
+uint first_of(uvec2 stretch) {
+    return max(stretch.x, max(stretch.y, MOST / 4u) - MOST / 4u);
+}
+
 Piece piece_at(vec3 place_m) {
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
     int highest = int(flow.counts.y) - 1;
@@ -152,8 +157,7 @@ Piece piece_at(vec3 place_m) {
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
-            for (uint i = first; i < stretch.y; i++) {
+            for (uint i = first_of(stretch); i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 float squared = dot(way, way);
                 uint number = items.list[i].y;
@@ -169,8 +173,7 @@ Piece piece_at(vec3 place_m) {
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
-            for (uint i = first; i < stretch.y; i++) {
+            for (uint i = first_of(stretch); i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 uint number = items.list[i].y;
                 // The plane between two middles cuts the surface in a line.
@@ -194,8 +197,7 @@ float seam_at(vec3 place_m) {
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
-            for (uint i = first; i < stretch.y; i++) {
+            for (uint i = first_of(stretch); i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 float squared = dot(way, way);
                 if (squared < nearest) {
@@ -210,8 +212,7 @@ float seam_at(vec3 place_m) {
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            uint first = max(stretch.x, max(stretch.y, MOST / 2u) - MOST / 2u);
-            for (uint i = first; i < stretch.y; i++) {
+            for (uint i = first_of(stretch); i < stretch.y; i++) {
                 float weight = kernel(length(apart(place_m - predicted.list[i].xyz)) / flow.support_m);
                 more += toes.list[items.list[i].y] == toe ? weight : -weight;
                 all += weight;

@@ -173,10 +173,14 @@ impl Animate {
         self.inflow.out(self.steps)
     }
 
+    /// Steps in the time of a frame.
+    pub fn substeps(&self) -> u32 {
+        self.sph().map_or(1, |sph| sph.substeps)
+    }
+
     /// Index of the state that the last step wrote; the first before any.
     pub fn current(&self) -> usize {
-        let substeps = self.sph().map_or(1, |sph| sph.substeps);
-        (self.steps.saturating_mul(substeps).saturating_sub(1) % 2) as usize
+        (self.steps.saturating_mul(self.substeps()).saturating_sub(1) % 2) as usize
     }
 }
 

@@ -208,7 +208,8 @@ impl Paper for Lava {
 
     fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
         let animate = &mut self.animate;
-        for _ in 0..number.saturating_sub(animate.steps()).min(most) {
+        let frames = (most / animate.substeps()).max(1);
+        for _ in 0..number.saturating_sub(animate.steps()).min(frames) {
             animate.record(frame)?;
         }
         Ok(number.saturating_sub(animate.steps()))

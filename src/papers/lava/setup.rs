@@ -93,7 +93,7 @@ impl Setup {
                 return refused("a map does not repeat; choose `sides` walls");
             }
             if self.parameters.flow.vent.toe_m3 > 0.0 {
-                return refused("where toes break out follows from the slope of a level floor; leave out `toe-volume`");
+                return refused("where toes break out follows from the slope of a level floor; give `toe-volume` 0");
             }
         }
         match (self.objects.first(), self.parameters.shading) {

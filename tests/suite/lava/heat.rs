@@ -45,7 +45,7 @@ fn half_cold(parameters: &Parameters) -> Particles {
     particles
 }
 
-pub(super) fn oracle_of(parameters: &Parameters) -> Oracle {
+fn oracle_of(parameters: &Parameters) -> Oracle {
     let Flow { heat, melt_kg_m3, .. } = &parameters.flow;
     let capacity = f64::from(*melt_kg_m3) * f64::from(heat.capacity_j_kgk);
     Oracle {

@@ -49,22 +49,6 @@ impl Heat {
     }
 }
 
-impl Heat {
-    /// Loss of a sheet as warm as that in the mean of its thickness, over density and heat capacity, in kelvin times metres per second: its
-    /// temperature falls as a parabola from the floor, which conducts nothing, up to a face that radiates; without crystals.
-    pub fn shed(&self, kelvin: f64, thickness: f64) -> f64 {
-        let resistance = thickness / (3.0 * self.diffusivity * self.capacity);
-        let radiated = |face: f64| self.emissivity * STEFAN_BOLTZMANN * (face.powi(4) - self.ambient.powi(4));
-        // Newton's method comes down to the root: what reaches the face is convex.
-        let mut face = kelvin;
-        for _ in 0..5 {
-            let slope = 1.0 + resistance * 4.0 * self.emissivity * STEFAN_BOLTZMANN * face.powi(3);
-            face -= (face + resistance * radiated(face) - kelvin) / slope;
-        }
-        radiated(face) / self.capacity
-    }
-}
-
 impl Fluid {
     /// Steepness of the amount of lava around a particle, per radius of the kernel; where it is less than 0.6 the particle is
     /// inside, and has none.

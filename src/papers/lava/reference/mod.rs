@@ -2,8 +2,8 @@
 //!
 //! [`step`] is listing 5.1, [`clusters`] section 5.2, [`density`] eq. 6.2, [`Grid::accepted`] section 6.2,
 //! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7, [`toned`] the display's
-//! tone, [`Surface::cast`] rays, which are ours, [`light`] black bodies', [`Fluid`] a viscous fluid, [`Heat`] its heat and
-//! [`Sheet`] a thin flow without particles (chapter 9),
+//! tone, [`Surface::cast`] rays, which are ours, [`light`] black bodies', [`Fluid`] a viscous fluid and [`Heat`] its heat
+//! (chapter 9),
 //! [`Crust`] its crust's relief and [`fold_length`] the ropes' length (chapter 3).
 
 mod animation;
@@ -14,7 +14,6 @@ mod fluid;
 mod folding;
 mod heat;
 mod rays;
-mod sheet;
 mod splats;
 mod surface;
 
@@ -25,6 +24,5 @@ pub use density::{Grid, density};
 pub use fluid::Fluid;
 pub use folding::{fold_growth, fold_length};
 pub use heat::{Heat, cooled_slab, crust_face, melt_viscosity, yield_stress};
-pub use sheet::{Sheet, Source};
 pub use splats::{Pixel, Splats, toned};
 pub use surface::Surface;

@@ -40,7 +40,7 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         "space",
         Extents(parameters.space_m.to_array()).text(),
         &format!(
-            "must be {least_m} metres along every side at least, half a distance of the particles: make it wider, or take more \
+            "must be {least_m:.4} metres along every side at least, half a distance of the particles: make it wider, or take more \
              `particles`"
         ),
     )?;

@@ -24,14 +24,15 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let [columns, _, rows] = parameters.density.map(f64::from);
     let detail = f64::from(parameters.flow.crust.detail(parameters).unwrap_or(0));
     let crust = detail * detail * columns * rows;
+    let walks = if parameters.flow.vent.toe_m3 > 0.0 { 4.0 } else { 2.0 };
     Estimate {
         bytes: vec![
-            ("particles", 136.0 * particles + neighbours::bytes(parameters.particles) + sort::bytes(&cells)),
+            ("particles", 140.0 * particles + neighbours::bytes(parameters.particles) + sort::bytes(&cells)),
             ("density", TEXEL * (2.0 * columns * rows + 5.0 * crust)),
         ],
         buffers: vec![("particles", 16.0 * particles)],
         passes: Some(("corrections", (steps * (iterations + 24.0)) as u64)),
-        invocations: vec![("particles", steps * looked_at_in_all), ("density", 2.0 * crust * looked_at)],
+        invocations: vec![("particles", steps * looked_at_in_all), ("density", walks * crust * looked_at)],
         ..Estimate::default()
     }
 }

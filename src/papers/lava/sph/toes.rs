@@ -76,29 +76,28 @@ pub fn toes(vent: &Vent, out_m3: f64, fall: f64, sides_m: DVec2, seed: u64) -> V
     let source_m = DVec2::from(vent.middle_m.map(f64::from));
     let low = DVec2::splat(f64::from(vent.radius_m));
     let mut toes: Vec<Toe> = Vec::new();
+    let mut circles: Vec<(DVec2, f64)> = Vec::new();
     let mut first_m3 = 0.0;
     while first_m3 < out_m3 && toes.len() < 2 * MOST_TOES as usize {
         let volume_m3 = f64::from(vent.toe_m3) * f64::from(random.range(LEAST_VOLUME, 2.0 - LEAST_VOLUME));
         let mut toe = Toe { first_m3, volume_m3, break_m: source_m, way: DVec2::ZERO, parent: toes.len() };
         if !toes.is_empty() {
-            let breaks = breaks(&toes, &toe, |place_m| (place_m.x - source_m.x) * fall, &mut random);
+            let mut breaks = breaks(&toes, &toe, |place_m| (place_m.x - source_m.x) * fall, &mut random);
+            breaks.sort_by(|a, b| b.load.total_cmp(&a.load));
             let is_inside = |middle_m: DVec2| middle_m.cmpge(low).all() && middle_m.cmple(sides_m - low).all();
             let has_room = |next: &Toe| {
                 let (middle_m, radius_m) = next.full();
-                let apart = |(at, other): (usize, &Toe)| {
-                    let (other_m, other_radius_m) = other.full();
+                let apart = |(at, &(other_m, other_radius_m)): (usize, &(DVec2, f64))| {
                     at == next.parent || middle_m.distance(other_m) >= ROOM * (radius_m + other_radius_m)
                 };
-                is_inside(middle_m) && toes.iter().enumerate().all(apart)
+                is_inside(middle_m) && circles.iter().enumerate().all(apart)
             };
-            let weakest = |fits: &dyn Fn(&Toe) -> bool| {
-                let kept = breaks.iter().filter(|next| fits(&next.toe));
-                kept.max_by(|a, b| a.load.total_cmp(&b.load)).map(|next| next.toe)
-            };
+            let weakest = |fits: &dyn Fn(&Toe) -> bool| breaks.iter().map(|next| next.toe).find(|toe| fits(toe));
             // Where there is no room left a toe overruns others, and last of all swells over the vent.
             toe = weakest(&has_room).or_else(|| weakest(&|next| is_inside(next.full().0))).unwrap_or(toe);
         }
         first_m3 += volume_m3;
+        circles.push(toe.full());
         toes.push(toe);
     }
     toes
