@@ -86,8 +86,7 @@ impl Terrain {
     fn of(seed: u64, side: usize) -> Arc<Self> {
         let latest = || LATEST.lock().unwrap_or_else(PoisonError::into_inner);
         let few = Some(side).filter(|side| seed == USUAL.0 && *side <= FEW);
-        let fits =
-            |(of, made_for, _): &&(u64, Option<usize>, _)| *of == seed && (made_for.is_none() || *made_for == few);
+        let fits = |(of, made_for, _): &&Latest| *of == seed && (made_for.is_none() || *made_for == few);
         if let Some((.., terrain)) = latest().as_ref().filter(fits) {
             return Arc::clone(terrain);
         }
