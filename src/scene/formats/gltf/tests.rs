@@ -167,6 +167,9 @@ fn bad_contents_and_containers_are_refused() {
         bytes[12..16].copy_from_slice(&length.to_le_bytes());
         assert!(parse(&bytes, Path::new("")).is_err());
     }
+    // A container in a container, whose own stated length is less than its header.
+    let fault = parse(&binary("glTF\x02\0\0\0\x02\0\0\0", &square_bytes()), Path::new("")).unwrap_err();
+    assert!(fault.to_string().contains("expected value at line 1 column 1"), "{fault}");
 }
 
 #[test]
@@ -256,7 +259,7 @@ fn buffers_of_one_file_share_it() {
     std::fs::write(folder.path().join("a.bin"), square_bytes()).unwrap();
     let buffers = format!(r#""buffers":[{}]"#, vec![r#"{"uri":"a.bin","byteLength":54}"#; 100].join(","));
     let json = document(NODE, LIST, Some("a.bin")).replace(r#""buffers":[{"uri":"a.bin","byteLength":54}]"#, &buffers);
-    let document = Gltf::from_slice(json.as_bytes()).unwrap().document;
+    let document = ::gltf::Gltf::from_slice(json.as_bytes()).unwrap().document;
     assert_eq!(Buffers::read(&document, None, folder.path()).unwrap().total_bytes(), 54);
     assert_eq!(parse(json.as_bytes(), folder.path()).unwrap().triangle_count(), 2);
 }
