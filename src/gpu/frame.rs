@@ -86,7 +86,7 @@ impl Frame<'_> {
         self.submit(None)
     }
 
-    /// Submits and waits; `pass` is the one whose results the host waits for.
+    /// Submits and waits; `pass` is the one behind which it waits with more of the frame to come, `None` at its end.
     fn submit(&mut self, pass: Option<usize>) -> Result<(), Error> {
         let r = &mut *self.recorder;
         if self.mode == Mode::Bracketed
@@ -95,7 +95,7 @@ impl Frame<'_> {
             r.write_timestamp(query);
         }
         let submitted_ms = self.started.elapsed().as_secs_f64() * 1e3;
-        // Only what waits for no pass ends the frame.
+        // Only a wait behind no pass ends the frame.
         r.commands.ends_frame = pass.is_none().then_some(r.frames);
         r.frames += u64::from(pass.is_none());
         let finished = r.commands.submit_and_wait()?;
@@ -133,21 +133,22 @@ impl Frame<'_> {
         self.submit(Some(at))?;
         let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
         *self.recorder.sample.passes[at].wait_ms.get_or_insert(0.0) += wait_ms;
-        if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
-            return Err(Error::Interrupted);
-        }
         self.go_on()
     }
 
     /// Reserves `work` of this submission for a dispatch of `pass`: where it would hold more than `most`, what is recorded is
-    /// submitted first and waited for. A frame of hours is many submissions then, and can be given up between them. Both are
-    /// invocations, or turns of their loops.
+    /// submitted first and waited for, of which nothing is read back. A frame of hours is many submissions then, and can be
+    /// given up between them. Both are invocations, or turns of their loops.
     ///
     /// # Errors
     /// Those of [`Frame::wait_for`].
     pub fn reserve_work(&mut self, pass: &Pass, work: f64, most: f64) -> Result<(), Error> {
         if self.work > 0.0 && self.work + work > most {
-            self.wait_for(pass)?;
+            self.check_open()?;
+            self.admit(pass.info())?;
+            if let Some(last) = self.last {
+                self.part_behind(last)?;
+            }
         }
         self.work += work;
         Ok(())
@@ -332,18 +333,26 @@ impl Frame<'_> {
         let Some(at) = self.last.filter(|_| self.recorder.submits_by_pass && self.mode == Mode::Plain) else {
             return Ok(());
         };
-        let last = self.recorder.sample.passes[at].info.name;
-        if last == next.name {
+        if self.recorder.sample.passes[at].info.name == next.name {
             return Ok(());
         }
+        self.part_behind(at)
+    }
+
+    /// Submits what is recorded, up to the pass at `last`, and waits for it. The method waits for nothing here: no pass is
+    /// charged for it.
+    fn part_behind(&mut self, last: usize) -> Result<(), Error> {
         // Until the rest of the frame has begun, nothing may be recorded.
-        self.failed = Some(last);
-        self.submit(Some(at))?;
+        self.failed = Some(self.recorder.sample.passes[last].info.name);
+        self.submit(Some(last))?;
         self.go_on()
     }
 
-    /// Begins the rest of the frame, behind a submission that was waited for.
+    /// Begins the rest of the frame, behind a submission that was waited for, unless the frame is to be given up.
     fn go_on(&mut self) -> Result<(), Error> {
+        if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
+            return Err(Error::Interrupted);
+        }
         self.submission += 1;
         self.begin()?;
         self.failed = None;

@@ -35,7 +35,7 @@
 //! | touch what a pass writes a second time in that pass | uses are compared with each other | `pass_check` | `misuse_passes::what_is_written_is_touched_once` |
 //! | write depth that a pass only tests, or fill it with what lies outside 0 to 1 | loads, clear values and the tests of counting draws are compared; hosts upload none | `render_pass`, `pass_check`, [`transfer`] | `misuse_targets::depth_is_cleared_to_what_it_can_hold`, `misuse_targets::depth_that_is_only_tested_keeps_what_it_holds`, `misuse_targets::counting_draws_write_no_attachment_that_is_read_only`, `misuse_targets::depth_is_not_uploaded` |
 //! | clear integers to something else | clear values are compared with the format's range, and given in its type | `render_pass` | `misuse_targets::integers_are_cleared_to_integers` |
-//! | read what nothing has written | each layer and byte range knows if it was | `barrier` | `refusals::a_sampled_image_must_be_written_in_every_layer`, `refusals::a_storage_buffer_that_is_only_read_must_be_written_in_every_byte`, `refusals::a_target_that_keeps_its_contents_must_have_some`, `refusals::vertices_and_copies_must_have_a_source` |
+//! | read what nothing has written, but for storage that the pass may write itself | each layer and byte range knows if it was | `barrier` | `refusals::a_sampled_image_must_be_written_in_every_layer`, `refusals::a_storage_buffer_that_is_only_read_must_be_written_in_every_byte`, `refusals::a_target_that_keeps_its_contents_must_have_some`, `refusals::vertices_and_copies_must_have_a_source` |
 //! | copy more than fits, between formats, or onto itself | sizes, formats and ranges are compared | [`transfer`] | `misuse_passes::copies_fit` |
 //! | leave an image's tracked layout wrong by an error, a panic or a failed submission | states are committed when the submission has finished | `tracked` | `misuse::a_frame_that_is_given_up_leaves_no_trace`, `tests::after_a_failed_wait_nothing_is_dropped_that_the_device_may_read` |
 //! | go on with a frame after an error in it, that of a wait between two submissions included | the frame refuses, and is not submitted | [`Frame`] | `misuse::an_error_that_is_passed_over_stops_the_frame`, `tests::a_failed_wait_within_a_frame_ends_it` |
@@ -56,7 +56,15 @@
 //!
 //! Not checked here: the inside of a shader, its loops, what it does with shared memory and built-ins. Shaders are built
 //! in, and a test makes every pipeline under validation; run with `--validate` what `--shader-dir` replaces. A texel
-//! fetch beyond an image gives undefined values, as Vulkan defines it.
+//! fetch beyond an image gives undefined values, as Vulkan defines it. Nor are
+//!
+//! - reads of storage that a pass may write: of every storage image, and of storage buffers that a shader does not declare
+//!   `readonly`. Such a pass may be the first to write them, and is recorded whether anything has written them or not; what it
+//!   reads of them before it writes is undefined then. Behind it all that was bound so counts as written, also where its
+//!   shader wrote a part;
+//! - draws and dispatches in one body of a pass that write the same storage. Barriers lie before a recording of a pass and
+//!   never inside it: those of one body may run at the same time and in any order, and what one of them is to see of
+//!   another's writes wants a recording of its own, such as another call of [`Frame::compute`] with the same pass.
 
 pub mod access;
 mod barrier;

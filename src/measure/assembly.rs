@@ -63,9 +63,6 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
     let passes: Vec<Pass> =
         measurement.passes.iter().map(|p| pass(p, metadata.limits.as_ref(), metadata.is_cpu)).collect();
     let frame_ms = summarize(&measurement.frame_ms);
-    let of_passes = |times: fn(&Pass) -> Option<f64>| passes.iter().filter_map(times).sum::<f64>();
-    let gpu_ms = of_passes(|p| p.gpu_ms.as_ref().map(|s| s.median));
-    let host_ms = of_passes(|p| p.host_ms.as_ref().map(|s| s.median));
     let is_untimed = |p: &&MeasuredPass| p.gpu_ms.iter().any(|ms| ms.is_nan());
     let untimed: Vec<&str> = measurement.passes.iter().filter(is_untimed).map(|p| p.info.name).collect();
     let uncounted: Vec<&str> = measurement.passes.iter().filter(|p| p.is_uncounted).map(|p| p.info.name).collect();
@@ -108,8 +105,8 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
         frames: schedule.frames,
         repeat: measurement.repeat.max(1),
         process: metadata.process,
-        overlap_ms: median(&measurement.bracket_ms).filter(|_| is_timestamped).map(|bracket| gpu_ms - bracket),
-        unaccounted_ms: frame_ms.as_ref().filter(|_| is_timestamped).map(|frame| frame.median - gpu_ms - host_ms),
+        overlap_ms: measurement.overlap_ms().filter(|_| is_timestamped),
+        unaccounted_ms: measurement.unaccounted_ms().filter(|_| is_timestamped),
         stamp_floor_ms: metadata.stamp_floor_ms,
         load_ms: Some(metadata.load_ms),
         loading: metadata.loading,

@@ -53,7 +53,8 @@ pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
     Ok(Loaded { scene, load_ms, loading: has_files.then_some(loading) })
 }
 
-/// Measures papers, each with the shaders that it is made of, again and again until their buffers suffice.
+/// Measures papers, each with the shaders that it is made of, again and again until their buffers suffice. First use is that
+/// of the first time.
 ///
 /// # Errors
 /// [`Error::Interrupted`] where a paper has no whole frame; any error of the Vulkan layer.
@@ -64,21 +65,28 @@ pub fn measure_settled(
     schedule: Schedule,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Measurement>, Error> {
+    let mut first_frame_ms: Option<Vec<f64>> = None;
     loop {
         let mut measured: Vec<&mut dyn Paper> = Vec::with_capacity(papers.len());
         for (paper, _) in papers.iter_mut() {
             measured.push(&mut **paper);
         }
-        let measurements = measure(recorder, &mut measured, schedule, watch)?;
+        let mut measurements = measure(recorder, &mut measured, schedule, watch)?;
         device.wait_idle()?;
         if measurements.iter().any(|m| m.frame_ms.is_empty()) {
             return Err(Error::Interrupted);
         }
+        // Passes that are made anew may find compiled what the first ones had to wait for.
+        let first_frame_ms =
+            first_frame_ms.get_or_insert_with(|| measurements.iter().map(|one| one.first_frame_ms).collect());
         let mut are_settled = true;
         for (paper, shaders) in papers.iter_mut() {
             are_settled &= paper.settle(shaders)?;
         }
         if are_settled {
+            for (measurement, first_ms) in measurements.iter_mut().zip(first_frame_ms) {
+                measurement.first_frame_ms = *first_ms;
+            }
             return Ok(measurements);
         }
     }

@@ -181,9 +181,10 @@ pub struct Run {
     pub frame_ms: Option<Summary>,
     /// The passes in the paper's order.
     pub passes: Vec<Pass>,
-    /// Median of the timestamped frame minus that of the plain one: what the exclusive timing forbids to overlap.
+    /// Median over the frames of the passes' GPU times less the GPU time of the same frame as a whole: what the exclusive
+    /// timing forbids to overlap.
     pub overlap_ms: Option<f64>,
-    /// Median of the frame that no pass accounts for.
+    /// Median over the frames of the time that neither GPU nor host work of a pass accounts for.
     pub unaccounted_ms: Option<f64>,
     /// GPU time of an empty pass.
     pub stamp_floor_ms: Option<f64>,

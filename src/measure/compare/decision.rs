@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     fn evidence(ratio: f64, error: f64) -> Evidence {
-        Evidence::Welch { estimate: ratio.ln(), error, freedom: 18.0 }
+        Evidence::Welch { estimate: ratio.ln(), error, rounding: 0.0, freedom: 18.0 }
     }
 
     #[test]
@@ -177,7 +177,8 @@ mod tests {
 
     #[test]
     fn more_processes_are_foretold_for_a_gate() {
-        let found = |ratio: f64, error: f64| Evidence::Welch { estimate: ratio.ln(), error, freedom: 8.0 };
+        let found =
+            |ratio: f64, error: f64| Evidence::Welch { estimate: ratio.ln(), error, rounding: 0.0, freedom: 8.0 };
         let count = |evidence: &Evidence, members| needed_for_gate(evidence, (0.05, 0.05), 5, members, 1000);
         let slower = found(1.1, 0.03);
         assert_eq!(gate(&[&slower], 0.05, 0.05), [Gate::Undecided]);
@@ -194,12 +195,12 @@ mod tests {
     #[test]
     fn more_processes_are_foretold() {
         let rules = Rules::default();
-        let few = Evidence::Welch { estimate: 0.0, error: 0.015, freedom: 8.0 };
+        let few = Evidence::Welch { estimate: 0.0, error: 0.015, rounding: 0.0, freedom: 8.0 };
         let count = needed(&few, rules, 5, 1, 1000).unwrap();
         // 0.015 √(5 / n) t(0.95) < ln 1.02.
         assert!((7..=9).contains(&count), "{count}");
         assert!(needed(&few, rules, 5, 12, 1000).unwrap() <= count, "nothing differs");
-        let margin = Evidence::Welch { estimate: 0.02_f64.ln_1p(), error: 0.5, freedom: 8.0 };
+        let margin = Evidence::Welch { estimate: 0.02_f64.ln_1p(), error: 0.5, rounding: 0.0, freedom: 8.0 };
         assert_eq!(needed(&margin, rules, 5, 1, 1000), None);
         // Ranks of few blocks are never certain, however clear the difference: 2 / 2^n <= 0.0125 / 6.
         let clear = Evidence::signed_ranks(&[2.0, 2.001]).unwrap();

@@ -1,7 +1,8 @@
 //! Estimate of the logarithm of the ratio B / A of two sides' times, with its error.
 //!
 //! Sides that were measured apart give one number a process, the logarithm of its median: Welch's t-test compares them,
-//! so that the noise of frames counts once, as it shows between processes. Sides that were measured in turn, in blocks
+//! so that the noise of frames counts once, as it shows between processes; what a clock's steps hide does not show there, and
+//! is added. Sides that were measured in turn, in blocks
 //! A B B A, give one difference a block, in which drift cancels: the signed ranks of Wilcoxon compare those, exactly,
 //! whatever their distribution, and steps of the clock rate weigh no more than any other outlier.
 
@@ -10,8 +11,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// Evidence on ln(B / A), from at least two processes a side or two blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Evidence {
-    /// Estimate, its standard error and its degrees of freedom.
-    Welch { estimate: f64, error: f64, freedom: f64 },
+    /// Estimate, its standard error, the part of that which the steps of the clocks make, and its degrees of freedom.
+    Welch { estimate: f64, error: f64, rounding: f64, freedom: f64 },
     /// Means of all pairs of block differences, ascending (Walsh averages), and the number of blocks.
     SignedRanks { walsh: Vec<f64>, blocks: usize },
 }
@@ -19,12 +20,23 @@ pub enum Evidence {
 impl Evidence {
     /// Compares the logarithms of the processes' medians, B less A. Absent with fewer than two processes on a side.
     pub fn welch(a: &[f64], b: &[f64]) -> Option<Self> {
-        let ((mean_a, a), (mean_b, b)) = (mean_and_error(a)?, mean_and_error(b)?);
+        Self::welch_of_steps(a, b, [0.0; 2])
+    }
+
+    /// The same of medians that clocks have rounded, A's and B's to steps of these fractions of them. A median lies anywhere
+    /// within its step, which has the variance of a uniform law; all processes of a side may be off alike, so that no number
+    /// of them lessens it.
+    pub fn welch_of_steps(a: &[f64], b: &[f64], steps: [f64; 2]) -> Option<Self> {
+        let ((mean_a, mut a), (mean_b, mut b)) = (mean_and_error(a)?, mean_and_error(b)?);
+        let [of_a, of_b] = steps.map(|step| step * step / 12.0);
+        a.squared += of_a;
+        b.squared += of_b;
         let squared = a.squared + b.squared;
         // Equal numbers have no spread, and any freedom will do.
         let freedom = squared * squared / (a.squared * a.squared / a.freedom + b.squared * b.squared / b.freedom);
         let freedom = if freedom.is_finite() { freedom } else { a.freedom.min(b.freedom) };
-        Some(Evidence::Welch { estimate: mean_b - mean_a, error: squared.sqrt(), freedom })
+        let (error, rounding) = (squared.sqrt(), (of_a + of_b).sqrt());
+        Some(Evidence::Welch { estimate: mean_b - mean_a, error, rounding, freedom })
     }
 
     /// Compares sides that were measured in blocks, by each block's difference of logarithms. Absent with fewer than two.
@@ -54,7 +66,7 @@ impl Evidence {
     /// Probability of evidence at least as strong for a ratio above exp(`bound`), were it not above.
     pub fn p_above(&self, bound: f64) -> f64 {
         match self {
-            Evidence::Welch { estimate, error, freedom } => upper_tail((estimate - bound) / error, *freedom),
+            Evidence::Welch { estimate, error, freedom, .. } => upper_tail((estimate - bound) / error, *freedom),
             Evidence::SignedRanks { walsh, blocks } => {
                 // A Walsh average that equals the bound speaks for neither side.
                 let above = walsh.iter().filter(|average| **average > bound).count();
@@ -66,7 +78,7 @@ impl Evidence {
     /// Probability of evidence at least as strong for a ratio below exp(`bound`), were it not below.
     pub fn p_below(&self, bound: f64) -> f64 {
         match self {
-            Evidence::Welch { estimate, error, freedom } => upper_tail((bound - estimate) / error, *freedom),
+            Evidence::Welch { estimate, error, freedom, .. } => upper_tail((bound - estimate) / error, *freedom),
             Evidence::SignedRanks { walsh, blocks } => {
                 let below = walsh.iter().filter(|average| **average < bound).count();
                 tail_of_ranks(*blocks, below)
@@ -83,7 +95,7 @@ impl Evidence {
     /// few for one.
     pub fn interval(&self, error: f64) -> [f64; 2] {
         match self {
-            Evidence::Welch { estimate, error: deviation, freedom } => {
+            Evidence::Welch { estimate, error: deviation, freedom, .. } => {
                 let half = quantile(1.0 - 0.5 * error, *freedom) * deviation;
                 [estimate - half, estimate + half]
             }
@@ -109,11 +121,15 @@ impl Evidence {
     /// The same evidence as `factor` times as many processes or blocks would give it, to foretell how many are needed.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         match self {
-            Evidence::Welch { estimate, error, freedom } => Evidence::Welch {
-                estimate: *estimate,
-                error: error / factor.sqrt(),
-                freedom: (freedom + 2.0) * factor - 2.0,
-            },
+            Evidence::Welch { estimate, error, rounding, freedom } => {
+                let of_processes = (error * error - rounding * rounding).max(0.0);
+                Evidence::Welch {
+                    estimate: *estimate,
+                    error: (of_processes / factor + rounding * rounding).sqrt(),
+                    rounding: *rounding,
+                    freedom: (freedom + 2.0) * factor - 2.0,
+                }
+            }
             Evidence::SignedRanks { walsh, blocks } => {
                 // A normal law of the same quartiles stands for the averages.
                 let at = |fraction: f64| walsh[((walsh.len() - 1) as f64 * fraction) as usize];
@@ -122,6 +138,7 @@ impl Evidence {
                 Evidence::Welch {
                     estimate: self.estimate(),
                     error: deviation / blocks.sqrt(),
+                    rounding: 0.0,
                     freedom: (blocks - 1.0).max(1.0),
                 }
             }
@@ -199,7 +216,7 @@ mod tests {
         let a = [27.5, 21.0, 19.0, 23.6, 17.0, 17.9, 16.9, 20.1, 21.9, 22.6, 23.1, 19.6, 19.0, 21.7, 21.4];
         let b = [27.1, 22.0, 20.8, 23.4, 23.4, 23.5, 25.8, 22.0, 24.8, 20.2, 21.9, 22.1, 22.9, 30.5, 24.8];
         let evidence = Evidence::welch(&a, &b).unwrap();
-        let Evidence::Welch { estimate, error, freedom } = evidence else { panic!("{evidence:?}") };
+        let Evidence::Welch { estimate, error, freedom, .. } = evidence else { panic!("{evidence:?}") };
         near(estimate / error, 2.87463);
         near(freedom, 27.9004);
         near(evidence.p_different(), 0.007656);
@@ -234,6 +251,29 @@ mod tests {
         let [low, high] = evidence.interval(0.05);
         assert!(evidence.p_above(low - 1e-9) <= 0.025 && evidence.p_above(low + 1e-9) > 0.025 - 1e-9);
         assert!(evidence.p_below(high + 1e-9) <= 0.025);
+    }
+
+    /// All processes of a side read one number, which stands for any within its step.
+    #[test]
+    fn equal_readings_are_as_certain_as_their_clock() {
+        let steps = [0.04; 2];
+        let apart = |steps_apart: f64| Evidence::welch_of_steps(&[0.0; 2], &[0.04 * steps_apart; 2], steps).unwrap();
+        let error = |evidence: &Evidence| match evidence {
+            Evidence::Welch { error, .. } => *error,
+            Evidence::SignedRanks { .. } => f64::NAN,
+        };
+        let one = apart(1.0);
+        near(error(&one), 0.04 / 6.0_f64.sqrt());
+        near(error(&one.scaled(100.0)), error(&one));
+        assert!(one.p_different() > 0.1, "{one:?}");
+        assert!(apart(20.0).p_different() < 0.01);
+        near(apart(0.0).p_different(), 1.0);
+        // Where processes differ by more, the steps are nothing.
+        let [plain, stepped] = [[0.0; 2], [1e-4; 2]].map(|steps| {
+            let evidence = Evidence::welch_of_steps(&[0.0, 0.1, 0.05], &[0.2, 0.3, 0.25], steps).unwrap();
+            evidence.p_different()
+        });
+        near(plain, stepped);
     }
 
     #[test]

@@ -12,8 +12,7 @@ const MOST_PROCESSES: usize = 1000;
 
 /// Compares a configuration on both sides.
 pub(super) fn run(a: &Configuration, b: &Configuration, options: &Options) -> RunComparison {
-    let times = |time: &dyn Fn(&Run) -> Option<Vec<f64>>| Times::of(a, b, time);
-    let frame = times(&|run| run.frame_ms.as_ref().map(|time| time.samples.clone()));
+    let frame = Times::of(a, b, Clock::Host, |run| run.frame_ms.as_ref().map(|time| time.samples.clone()));
     let passes = pass_times(a, b);
     let of_frame = |pass: &Times| {
         let share = |pass, frame| positive(geometric_mean(pass)? / geometric_mean(frame)?);
@@ -51,14 +50,18 @@ pub(super) fn run(a: &Configuration, b: &Configuration, options: &Options) -> Ru
 struct Times {
     a: Vec<Vec<f64>>,
     b: Vec<Vec<f64>>,
+    /// Milliseconds of a step of each side's clock.
+    steps_ms: [f64; 2],
     /// Processes of the side with more of them, also of those without this time.
     processes: usize,
 }
 
 impl Times {
-    fn of(a: &Configuration, b: &Configuration, time: impl Fn(&Run) -> Option<Vec<f64>>) -> Self {
+    fn of(a: &Configuration, b: &Configuration, clock: Clock, time: impl Fn(&Run) -> Option<Vec<f64>>) -> Self {
         let processes = a.process_numbers().len().max(b.process_numbers().len());
-        Times { a: a.samples(&time), b: b.samples(&time), processes }
+        let [of_a, of_b] = [a, b].map(|side| side.samples(&time));
+        let steps_ms = [(a, &of_a), (b, &of_b)].map(|(side, samples)| side.tick_ms(clock).max(shown_step_ms(samples)));
+        Times { a: of_a, b: of_b, steps_ms, processes }
     }
 
     /// Every process has this time: the second of two stands in the block that it was measured in.
@@ -74,7 +77,11 @@ impl Times {
     fn evidence(&self, design: Design) -> Option<Evidence> {
         let (a, b) = (log_medians(&self.a)?, log_medians(&self.b)?);
         match design {
-            Design::Processes => Evidence::welch(&a, &b),
+            Design::Processes => {
+                let middle = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+                let [of_a, of_b] = self.steps_ms;
+                Evidence::welch_of_steps(&a, &b, [of_a / middle(&a), of_b / middle(&b)])
+            }
             Design::Blocks => {
                 let means =
                     |side: &[f64]| side.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<_>>();
@@ -94,6 +101,22 @@ impl Times {
 /// Logarithm of each process's median; absent where one is not positive.
 fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
     side.iter().map(|samples| median(samples).filter(|median| *median > 0.0).map(f64::ln)).collect()
+}
+
+/// Milliseconds of the step that samples show: the least difference between two of one process, where most of its samples
+/// repeat others. Devices step their timestamps by more than the period that they tell. Elsewhere steps are too short to
+/// matter, and this is 0.
+fn shown_step_ms(side: &[Vec<f64>]) -> f64 {
+    let of_process = |samples: &Vec<f64>| {
+        let mut ascending = samples.clone();
+        ascending.sort_by(f64::total_cmp);
+        let neighbours = ascending.windows(2).map(|pair| (pair[1] - pair[0], pair[1]));
+        // The same ticks in another order have a sum that differs in its last digits.
+        let steps: Vec<f64> = neighbours.filter(|(step, sample)| *step > 1e-9 * sample).map(|(step, _)| step).collect();
+        let values = steps.len() + 1;
+        steps.into_iter().min_by(f64::total_cmp).filter(|_| 2 * values <= samples.len())
+    };
+    side.iter().filter_map(of_process).min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 /// Of times near the ends of what a number holds a ratio, or a mean, may be 0 or infinite, which is none.
@@ -130,7 +153,7 @@ fn pass_times(a: &Configuration, b: &Configuration) -> Vec<(String, Clock, Times
                 };
                 time.as_ref().map(|time| time.samples.clone())
             };
-            let times = Times::of(a, b, samples);
+            let times = Times::of(a, b, clock, samples);
             if !(times.a.is_empty() && times.b.is_empty()) {
                 found.push((name.clone(), clock, times));
             }

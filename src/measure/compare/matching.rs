@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{Design, Input};
+use super::{Clock, Design, Input};
 use crate::report::alternative::alternatives;
 use crate::report::record::Run;
 
@@ -56,6 +56,9 @@ pub enum CompareError {
     },
 }
 
+/// Milliseconds of the host's clock: times are taken in nanoseconds. No clock is taken to be finer.
+const HOST_TICK_MS: f64 = 1e-6;
+
 /// The runs of one configuration on one side.
 #[derive(Debug)]
 pub(super) struct Configuration<'a> {
@@ -64,6 +67,8 @@ pub(super) struct Configuration<'a> {
     source: &'a str,
     /// Parameters that tell it from others of its paper, variant and preset, as in [`alternatives`].
     pub alternative: String,
+    /// Milliseconds of one step of a timestamp, on the device where it is longest; 0 where none tells.
+    timestamp_ms: f64,
     /// Runs of one process, process after process.
     processes: Vec<Vec<&'a Run>>,
 }
@@ -89,6 +94,14 @@ impl<'a> Configuration<'a> {
         let processes = self.processes.iter();
         let samples = processes.map(|runs| runs.iter().filter_map(|run| time(run)).flatten());
         samples.map(Iterator::collect::<Vec<f64>>).filter(|samples| !samples.is_empty()).collect()
+    }
+
+    /// Milliseconds of one step of a clock, as far as records tell.
+    pub fn tick_ms(&self, clock: Clock) -> f64 {
+        match clock {
+            Clock::Gpu => self.timestamp_ms.max(HOST_TICK_MS),
+            Clock::Host | Clock::Wait => HOST_TICK_MS,
+        }
     }
 
     /// Number of each process, in their order.
@@ -227,10 +240,13 @@ fn configurations<'a>(
             let index = found.iter().position(|known| known.fields == fields);
             let index = index.unwrap_or_else(|| {
                 let (first, source) = (runs[0], input.name.as_str());
-                found.push(Configuration { fields, first, source, alternative: String::new(), processes: vec![] });
+                let (alternative, timestamp_ms, processes) = (String::new(), 0.0, vec![]);
+                found.push(Configuration { fields, first, source, alternative, timestamp_ms, processes });
                 found.len() - 1
             });
-            let processes = &mut found[index].processes;
+            let Configuration { processes, timestamp_ms, .. } = &mut found[index];
+            let period_ns = input.record.environment.device.timestamp_period.unwrap_or(0.0);
+            *timestamp_ms = timestamp_ms.max(period_ns * 1e-6);
             // The same measurement twice is not two processes: it would make an interval of nothing. In blocks the
             // numbers of processes tell.
             if design == Design::Processes && processes.iter().any(|known| same_measurement(known, &runs)) {

@@ -1,5 +1,6 @@
 mod conditions;
 mod order;
+mod steps;
 mod words;
 
 use serde_json::json;

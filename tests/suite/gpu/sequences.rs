@@ -207,6 +207,35 @@ fn the_host_reads_in_the_middle_of_a_frame() {
 }
 
 #[test]
+fn work_that_is_parted_is_waited_for_by_no_pass() {
+    gpu_test(|device| {
+        let shaders = shaders(device);
+        let targets = ["a", "b"].map(|name| color_target(device, name, vk::Format::R32_SFLOAT, 4, 4));
+        let passes = [("first", 0), ("second", 1)]
+            .map(|(name, at)| paint_pass(&shaders, name, &targets[at], BLACK, Blend::Replace));
+        for mode in [Mode::Plain, Mode::Bracketed, Mode::Timestamped, Mode::Counted] {
+            let sample = run(device, mode, |frame| {
+                for (pass, value) in [(&passes[0], 1.0), (&passes[1], 2.0), (&passes[1], 3.0)] {
+                    frame.reserve_work(pass, 2.0, 3.0)?;
+                    paint(frame, pass, value)?;
+                }
+                Ok(())
+            })
+            .unwrap();
+            let listed: Vec<_> =
+                sample.passes.iter().map(|pass| (pass.info.name, pass.calls, pass.submission)).collect();
+            assert_eq!(listed, [("first", 1, 0), ("second", 2, 1)], "{mode:?}");
+            assert!(sample.passes.iter().all(|pass| pass.wait_ms.is_none()), "{mode:?}: nothing is read back");
+            // Behind what was handed in, not before what comes next.
+            let waits = sample.spans.iter().filter(|span| span.track == Track::Wait).map(|span| span.pass);
+            assert_eq!(waits.collect::<Vec<_>>(), [Some(0), Some(1), None], "{mode:?}");
+            let found: Vec<f32> = targets.iter().map(|target| texels::<f32>(device, target)[5]).collect();
+            assert_eq!(found, [1.0, 3.0], "{mode:?}");
+        }
+    });
+}
+
+#[test]
 fn passes_that_are_submitted_one_by_one_draw_the_same() {
     gpu_test(|device| {
         let shaders = shaders(device);
