@@ -31,12 +31,21 @@ const PATIENCE_NS: u64 = 100_000_000;
 pub enum Presented {
     /// It is on its way to the screen.
     Shown,
-    /// It may be on its way; the window has changed, and the swapchain must be made anew.
+    /// As `Shown`; a swapchain made anew may fit the surface better, or do no better.
+    Suboptimal,
+    /// It may not be seen: the window has changed, and the swapchain must be made anew.
     Stale,
     /// No image is free: try again later.
     Busy,
     /// The surface is lost, and must be made anew with the swapchain.
     SurfaceLost,
+}
+
+/// Size and turn of a surface, which a swapchain is made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Form {
+    extent: vk::Extent2D,
+    transform: vk::SurfaceTransformFlagsKHR,
 }
 
 /// An image of the swapchain.
@@ -188,6 +197,23 @@ impl Swapchain {
         self.plan.mode
     }
 
+    /// Form that its surface has by now; where the window chooses the size, with the swapchain's own.
+    ///
+    /// # Errors
+    /// Any error of Vulkan.
+    pub fn surface_form(&self) -> Result<Form, Error> {
+        let _alone = self.surface.lock();
+        let (physical, surface) = (self.device.physical().raw, self.surface.raw);
+        // SAFETY: surface and device are held, and belong to the same instance: there is no other swapchain by `new`.
+        let capabilities = unsafe { self.surface.calls.get_physical_device_surface_capabilities(physical, surface) }
+            .context("asking about the surface of", "the window")?;
+        let extent = match capabilities.current_extent {
+            vk::Extent2D { width: u32::MAX, height: u32::MAX } => self.plan.extent,
+            current => current,
+        };
+        Ok(Form { extent, transform: capabilities.current_transform })
+    }
+
     /// Shows a picture of the swapchain's extent and [format](Swapchain::picture_format), and waits until it is copied.
     ///
     /// # Errors
@@ -250,7 +276,8 @@ impl Swapchain {
         slot.is_pending = is_queued && slot.released.is_some();
         match presented {
             Ok(false) if !is_suboptimal => Ok(Presented::Shown),
-            Ok(_) | Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(Presented::Stale),
+            Ok(_) => Ok(Presented::Suboptimal),
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(Presented::Stale),
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => Ok(Presented::SurfaceLost),
             Err(other) => Err(Error::vulkan("presenting to", "the window", other)),
         }
@@ -330,26 +357,46 @@ fn presenting(device: &Device) -> Result<&Presenting, Error> {
     })
 }
 
+impl Swapchain {
+    /// True when nothing that was submitted uses it any more: the device is lost, or it is idle and every present that was
+    /// given a fence has let go.
+    fn is_over(&mut self) -> bool {
+        if !self.commands.is_idle() {
+            return false;
+        }
+        match self.device.raw_wait_idle() {
+            Ok(()) => {}
+            Err(vk::Result::ERROR_DEVICE_LOST) => return true,
+            Err(_) => return false,
+        }
+        let pending = self.slots.iter().filter(|slot| slot.is_pending).filter_map(|slot| slot.released.as_ref());
+        sync::are_over(&self.device, &pending.collect::<Vec<_>>())
+    }
+
+    /// Has every image wait for a present that never lets go.
+    #[cfg(test)]
+    pub(super) fn hold(&mut self) -> Result<(), Error> {
+        for slot in &mut self.slots {
+            (slot.released, slot.is_pending) = (Some(Fence::new(&self.device, "released")?), true);
+        }
+        Ok(())
+    }
+}
+
 impl Drop for Swapchain {
     fn drop(&mut self) {
-        if !self.commands.is_idle() {
-            // A copy may still write an image. Leaked on purpose, and the surface with it.
+        if !self.is_over() {
+            // A copy may still write an image, or a present use one. Leaked on purpose, and with it what must outlive it.
             self.acquired.leak();
             self.slots.iter_mut().for_each(Slot::leak);
             mem::forget(self.surface.clone());
+            mem::forget(self.device.clone());
             return;
-        }
-        // A lost device has nothing to wait for, and no other error leaves work behind that was not waited for.
-        let _ = self.device.raw_wait_idle();
-        for slot in &mut self.slots {
-            if slot.is_pending && slot.released.as_ref().is_some_and(|fence| fence.wait_and_reset().is_err()) {
-                // The present may still use both.
-                slot.leak();
-            }
         }
         let mut current = self.surface.lock();
         if let Some(presenting) = &self.device.presenting {
-            // SAFETY: the device is idle or lost, and nothing else has the swapchain.
+            // SAFETY: by `is_over` no copy and no present with a fence uses it, and on a device without such fences all that was
+            // submitted is done; the surface is locked for the call, and nothing else has the swapchain.
             unsafe { presenting.swapchains.destroy_swapchain(self.raw, None) };
         }
         // One that took over from this one has the surface already.

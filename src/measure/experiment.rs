@@ -197,7 +197,9 @@ impl<S: Study> Context<'_, S> {
         }
         if (self.shard.is_some() || self.assembled.is_some()) && !S::SHARED.contains(&experiment.name) {
             let known = S::SHARED.join(", ");
-            let message = format!("`shard`: {} is not shared out; of {} these are: {known}", experiment.name, S::PAPER);
+            let option = if self.assembled.is_some() { "assembled" } else { "shard" };
+            let message =
+                format!("`{option}`: {} is not shared out; of {} these are: {known}", experiment.name, S::PAPER);
             return Err(Error::Input(message));
         }
         let options = S::options();

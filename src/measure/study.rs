@@ -13,8 +13,17 @@ use super::stress::Axis;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
-/// The refusal of several [alternatives](Study::alternatives) where one is taken.
-pub const ONE_ALTERNATIVE: &str = "several values of an option in turn are for bench; give one";
+/// Refuses several [alternatives](Study::alternatives) where one is taken.
+///
+/// # Errors
+/// [`Error::Input`] names the parameter that has several values.
+pub fn check_one<S: Study>(setup: &S) -> Result<(), Error> {
+    let alternatives = setup.alternatives();
+    let [one, other, ..] = alternatives.as_slice() else { return Ok(()) };
+    let several = S::parameters().into_iter().find(|parameter| parameter.text(one) != parameter.text(other));
+    let name = several.map_or_else(|| "an option".to_owned(), |parameter| format!("`{}`", parameter.name));
+    Err(Error::Input(format!("{name}: several values in turn are for bench; give one")))
+}
 
 /// One paper as a user set it up: it declares its parameters, presets and experiments, from which the command line
 /// follows, and makes what is measured.

@@ -1,7 +1,9 @@
 //! A benchmark of what is seen, started from the window: the very command line that a shell would run.
 
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use egui::{Context, Grid, ScrollArea, Ui};
@@ -23,32 +25,60 @@ pub struct Bench {
     problem: Option<String>,
 }
 
+/// A benchmark that runs. It ends when this is dropped.
 struct Running {
     child: Child,
     started: Instant,
     path: PathBuf,
+    /// Reads standard error, on which a full pipe would hold it up, and gives its last line.
+    last_line: Option<JoinHandle<Option<String>>>,
+}
+
+impl Running {
+    fn start(mut command: Command, path: PathBuf) -> io::Result<Self> {
+        let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+        let mut running = Running { child, started: Instant::now(), path, last_line: None };
+        if let Some(errors) = running.child.stderr.take() {
+            running.last_line = Some(thread::Builder::new().name("errors".into()).spawn(|| last_line(errors))?);
+        }
+        Ok(running)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill().and_then(|()| self.child.wait().map(drop));
+    }
+}
+
+fn last_line(text: impl Read) -> Option<String> {
+    let last = BufReader::new(text).split(b'\n').map_while(Result::ok).last()?;
+    Some(String::from_utf8_lossy(&last).trim_end().to_owned())
+}
+
+/// The program with these arguments, and `--json FILE` behind them; and that file.
+fn command(arguments: &[String]) -> io::Result<(Command, PathBuf)> {
+    let folder = PathBuf::from("fumarole-out");
+    std::fs::create_dir_all(&folder)?;
+    let path = folder.join(format!("window-bench-{}.json", std::process::id()));
+    let mut command = Command::new(program::umbrella()?);
+    command.args(arguments).arg("--quiet").arg("--json").arg(&path);
+    for_another_process(&mut command);
+    Ok((command, path))
 }
 
 impl Bench {
-    /// Runs the program with these arguments, and `--json FILE` behind them.
+    /// Runs the program with these arguments, unless a benchmark runs, which would write the same file.
     pub fn start(&mut self, arguments: Vec<String>) {
+        if self.running.is_some() {
+            return;
+        }
         self.problem = None;
         self.record = None;
-        if let Err(error) = self.try_start(&arguments) {
-            self.problem = Some(format!("starting the benchmark: {error}"));
+        match command(&arguments).and_then(|(command, path)| Running::start(command, path)) {
+            Ok(running) => self.running = Some(running),
+            Err(error) => self.problem = Some(format!("starting the benchmark: {error}")),
         }
-    }
-
-    fn try_start(&mut self, arguments: &[String]) -> std::io::Result<()> {
-        let folder = PathBuf::from("fumarole-out");
-        std::fs::create_dir_all(&folder)?;
-        let path = folder.join(format!("window-bench-{}.json", std::process::id()));
-        let mut command = Command::new(program::umbrella()?);
-        command.args(arguments).arg("--quiet").arg("--json").arg(&path);
-        for_another_process(&mut command);
-        let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-        self.running = Some(Running { child, started: Instant::now(), path });
-        Ok(())
     }
 
     /// Looks whether it has ended.
@@ -65,31 +95,13 @@ impl Bench {
         }
     }
 
-    fn end(&mut self, running: Running, has_succeeded: bool) {
-        let Running { mut child, path, .. } = running;
-        let record = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice(&text).ok());
-        if !has_succeeded || record.is_none() {
-            let mut words = String::new();
-            if let Some(mut errors) = child.stderr.take() {
-                let _ = std::io::Read::read_to_string(&mut errors, &mut words);
-            }
-            let last = words.lines().last().unwrap_or("it ended without a word");
-            self.problem = Some(format!("benchmark: {last}"));
+    fn end(&mut self, mut running: Running, has_succeeded: bool) {
+        self.record = std::fs::read(&running.path).ok().and_then(|text| serde_json::from_slice(&text).ok());
+        if !has_succeeded || self.record.is_none() {
+            let last = running.last_line.take().and_then(|reader| reader.join().ok().flatten());
+            self.problem = Some(format!("benchmark: {}", last.as_deref().unwrap_or("it ended without a word")));
         }
-        self.record = record;
-        self.path = Some(path);
-    }
-
-    fn stop(&mut self) {
-        if let Some(mut running) = self.running.take() {
-            let _ = running.child.kill().and_then(|()| running.child.wait().map(drop));
-        }
-    }
-}
-
-impl Drop for Bench {
-    fn drop(&mut self) {
-        self.stop();
+        self.path = Some(std::mem::take(&mut running.path));
     }
 }
 
@@ -110,7 +122,7 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
                 ui.spinner();
                 ui.label(format!("running for {:.0} s", running.started.elapsed().as_secs_f32()));
                 if ui.button("Stop").clicked() {
-                    face.bench.stop();
+                    face.bench.running = None;
                 }
             }
         }
@@ -144,5 +156,37 @@ fn show_run(ui: &mut Ui, run: &Value) {
         ui.monospace(milliseconds(pass["gpu_ms"]["median"].as_f64()));
         ui.monospace(milliseconds(pass["host_ms"]["median"].as_f64()));
         ui.end_row();
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn running(script: &str) -> Bench {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", script]);
+        Bench { running: Some(Running::start(command, "no-such.json".into()).unwrap()), ..Bench::default() }
+    }
+
+    #[test]
+    fn one_that_says_more_than_a_pipe_holds_ends_and_its_last_line_is_told() {
+        let mut bench = running("head -c 200000 /dev/zero | tr '\\000' '\\n' >&2; echo out of paper >&2; exit 1");
+        let (context, started) = (Context::default(), Instant::now());
+        while bench.running.is_some() {
+            assert!(started.elapsed() < Duration::from_secs(20), "it stays");
+            thread::sleep(Duration::from_millis(2));
+            bench.poll(&context);
+        }
+        assert_eq!(bench.problem.as_deref(), Some("benchmark: out of paper"));
+    }
+
+    #[test]
+    fn while_one_runs_no_other_is_started() {
+        let mut bench = running("exec sleep 100");
+        let id = |bench: &Bench| bench.running.as_ref().map(|running| running.child.id());
+        let first = id(&bench);
+        bench.start(Vec::new());
+        assert_eq!((id(&bench), bench.problem.as_deref()), (first, None));
     }
 }

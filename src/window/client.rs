@@ -25,11 +25,18 @@ const GRACE: Duration = Duration::from_millis(250);
 /// Between two looks at a worker that is about to end.
 const LOOK: Duration = Duration::from_millis(2);
 
+/// An event, as the window is told it.
+struct Told {
+    event: Event,
+    /// Number of the frame that it is, or that it stands for.
+    serial: Option<u64>,
+}
+
 /// A worker. It ends when this is dropped.
 pub struct Client {
     child: Arc<Mutex<Child>>,
     requests: Option<Sender<Numbered>>,
-    events: Receiver<Event>,
+    events: Receiver<Told>,
     last_id: u64,
     is_alive: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
@@ -71,9 +78,9 @@ impl Client {
             }
         })?;
         let reader = thread::Builder::new().name("events".into()).spawn(move || {
-            listener.listen(BufReader::new(output), errors, |event| {
+            listener.listen(BufReader::new(output), errors, |told| {
                 // A window that has gone wants no more.
-                let _ = sender.send(event);
+                let _ = sender.send(told);
                 wake();
             });
         })?;
@@ -91,9 +98,10 @@ impl Client {
 
     /// The next event, if there is one; never waits. The worker may then draw another frame.
     pub fn try_receive(&mut self) -> Option<Event> {
-        let event = self.events.try_recv().ok()?;
-        if let Event::Frame(frame) = &event {
-            self.send(Request::Taken(frame.serial));
+        let Told { event, serial } = self.events.try_recv().ok()?;
+        // Of a frame that could not be read as well: the worker waits for those that it has told of.
+        if let Some(serial) = serial {
+            self.send(Request::Taken(serial));
         }
         Some(event)
     }
@@ -173,17 +181,18 @@ struct Listener {
 }
 
 impl Listener {
-    fn listen(mut self, output: impl BufRead, errors: JoinHandle<()>, tell: impl Fn(Event)) {
+    fn listen(mut self, output: impl BufRead, errors: JoinHandle<()>, tell: impl Fn(Told)) {
         for line in output.split(b'\n').map_while(Result::ok) {
             self.exchange = None;
             match serde_json::from_slice::<Event>(&line) {
-                Ok(mut event) => match self.fill(&mut event) {
-                    Ok(()) => tell(event),
-                    Err(error) => {
+                Ok(mut event) => {
+                    let serial = if let Event::Frame(frame) = &event { Some(frame.serial) } else { None };
+                    if let Err(error) = self.fill(&mut event) {
                         let problem = format!("reading the worker's pictures: {error}");
-                        tell(Event::Failed { id: 0, problem });
+                        event = Event::Failed { id: 0, problem };
                     }
-                },
+                    tell(Told { event, serial });
+                }
                 // A driver's own words on standard output.
                 Err(_) => remember(&self.heard, String::from_utf8_lossy(&line).into_owned()),
             }
@@ -192,7 +201,8 @@ impl Listener {
         let _ = errors.join();
         self.is_alive.store(false, Ordering::Release);
         let stderr = lock(&self.heard).drain(..).collect();
-        tell(Event::Ended(Ended { code: status.and_then(|s| s.code()), signal: signal(status), stderr }));
+        let ended = Ended { code: status.and_then(|s| s.code()), signal: signal(status), stderr };
+        tell(Told { event: Event::Ended(ended), serial: None });
     }
 
     fn fill(&mut self, event: &mut Event) -> io::Result<()> {

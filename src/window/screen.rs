@@ -9,7 +9,7 @@ use winit::window::Window;
 
 use super::painter::Painter;
 use crate::gpu::surface::{Display, Surface};
-use crate::gpu::swapchain::{PresentMode, Presented, Swapchain};
+use crate::gpu::swapchain::{Form, PresentMode, Presented, Swapchain};
 use crate::gpu::{Device, Error, ImageView, Instance};
 
 /// Means by which a window shows itself.
@@ -23,6 +23,8 @@ pub struct Screen {
     window: Arc<Window>,
     mode: PresentMode,
     is_stale: bool,
+    /// Form of the surface that the swapchain was last made anew for because another might fit it better.
+    refitted: Option<Form>,
 }
 
 /// The end of a frame of the interface.
@@ -60,6 +62,7 @@ impl Screen {
             window: window.clone(),
             mode,
             is_stale: true,
+            refitted: None,
         })
     }
 
@@ -142,13 +145,22 @@ impl Screen {
                     self.shown = Some(picture);
                     return Ok(Drawn::Yes(painted));
                 }
+                Presented::Suboptimal => {
+                    self.shown = Some(picture);
+                    // Once for each form: a display may call every swapchain suboptimal that it is given.
+                    let form = swapchain.surface_form()?;
+                    if self.refitted.replace(form) == Some(form) {
+                        return Ok(Drawn::Yes(painted));
+                    }
+                    self.is_stale = true;
+                }
                 Presented::Busy => {
                     self.shown = None;
                     return Ok(Drawn::Later { is_soon: true });
                 }
                 Presented::Stale => (self.is_stale, self.shown) = (true, None),
                 Presented::SurfaceLost => {
-                    (self.is_stale, self.shown) = (true, None);
+                    (self.is_stale, self.shown, self.refitted) = (true, None, None);
                     self.swapchain = None;
                     self.surface = Surface::new(self.device.instance(), &self.window)?;
                 }

@@ -45,7 +45,7 @@ pub(super) struct Plan {
     pub mode: PresentMode,
     /// Least number of images that is asked for.
     pub image_count: u32,
-    /// The surface's current transform, which the display then need not apply.
+    /// Turn that pictures are drawn with: none where the display can turn them itself, else the surface's current one.
     pub transform: vk::SurfaceTransformFlagsKHR,
     /// Way in which the display blends the window with those below it.
     pub alpha: vk::CompositeAlphaFlagsKHR,

@@ -77,6 +77,19 @@ impl Fence {
     }
 }
 
+/// Waits for the presents that were given these fences of the device, for all together as long as for one. True when each is
+/// over, or the device is lost and does nothing any more.
+pub(super) fn are_over(device: &Device, fences: &[&Fence]) -> bool {
+    if fences.is_empty() {
+        return true;
+    }
+    let raw: Vec<vk::Fence> = fences.iter().map(|fence| fence.raw).collect();
+    // SAFETY: there is one at least; they are borrowed, and so alive; their swapchain made them on this device, and leaks none
+    // before it has waited.
+    let waited = unsafe { device.raw.wait_for_fences(&raw, true, PATIENCE_NS) };
+    matches!(waited, Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST))
+}
+
 impl Drop for Fence {
     fn drop(&mut self) {
         // SAFETY: the swapchain waits for the present that was given it before it drops, or leaks it; a null handle is

@@ -7,6 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::ptr::NonNull;
 use std::sync::Arc;
 use std::thread;
+use std::time::{Duration, Instant};
 
 use ash::vk;
 use raw_window_handle::{
@@ -173,6 +174,19 @@ fn a_swapchain_takes_over_from_the_one_before() {
 }
 
 #[test]
+fn a_surface_has_another_form_when_its_window_has_another_size() {
+    presenting(|device, surface, window| {
+        let made = swapchain(device, surface, None).unwrap();
+        let first = made.surface_form().unwrap();
+        assert_eq!(made.surface_form().unwrap(), first);
+        window.resize((16, 8));
+        assert_ne!(made.surface_form().unwrap(), first);
+        window.resize((8, 8));
+        assert_eq!(made.surface_form().unwrap(), first);
+    });
+}
+
+#[test]
 fn a_device_presents_by_an_instance_with_surfaces() {
     presenting(|device, _, window| {
         let plain = open_device();
@@ -269,5 +283,24 @@ fn after_a_failed_wait_a_swapchain_stays_with_its_surface() {
     drop((made, surface));
     let count = |kind| device.live().count(kind);
     assert_eq!([Kind::Swapchain, Kind::Surface, Kind::CommandPool].map(count), [1; 3]);
+    assert_valid(&device);
+}
+
+#[test]
+fn a_swapchain_whose_presents_do_not_end_stays_with_its_surface() {
+    let _alone = alone();
+    let window = Window::open(&Server::start());
+    let (device, surface) = open_presenting(&window);
+    let mut made = swapchain(&device, &surface, None).unwrap();
+    made.hold().unwrap();
+    let count = |kind| device.live().count(kind);
+    let images = count(Kind::Fence) - 1;
+    assert!(images > 2, "{images}");
+    let started = Instant::now();
+    drop((made, surface));
+    // One second for all images together.
+    assert!(started.elapsed() < Duration::from_millis(2500), "{:?}", started.elapsed());
+    let left = [Kind::Swapchain, Kind::Surface, Kind::CommandPool, Kind::Fence, Kind::Semaphore].map(count);
+    assert_eq!(left, [1, 1, 0, images, images + 1]);
     assert_valid(&device);
 }

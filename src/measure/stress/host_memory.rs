@@ -8,13 +8,13 @@ pub fn peak_bytes() -> Option<u64> {
     kilobytes(&account("/proc/self/status")?, "VmHWM:")
 }
 
-/// Memory that a process may still take: what the system has free, and what the control group may have.
+/// Memory that a process may still take: what the system has free, and what its control group and those round it may have.
 pub fn available_bytes() -> Option<u64> {
     let free = kilobytes(&account("/proc/meminfo")?, "MemAvailable:")?;
     let groups = account("/proc/self/cgroup").unwrap_or_default();
     let group = groups.lines().find_map(|line| line.strip_prefix("0::/"));
-    let of_group = group.and_then(|group| left_in(&Path::new("/sys/fs/cgroup").join(group)));
-    Some(of_group.map_or(free, |left| left.min(free)))
+    let of_groups = group.and_then(|group| least_left(Path::new("/sys/fs/cgroup"), group));
+    Some(of_groups.map_or(free, |left| left.min(free)))
 }
 
 /// Processes that the system has killed since its start because memory ran out, its own or a control group's.
@@ -31,6 +31,11 @@ pub fn be_killed_first() {
 /// Text of a file of Linux's account; another system may show the account of a Linux below it, which is not its own.
 fn account(path: &str) -> Option<String> {
     cfg!(target_os = "linux").then(|| fs::read_to_string(path).ok()).flatten()
+}
+
+/// Least that is left in a group below `root` and in those that it lies in, each of which counts what those in it have.
+fn least_left(root: &Path, group: &str) -> Option<u64> {
+    Path::new(group).ancestors().filter_map(|group| left_in(&root.join(group))).min()
 }
 
 fn left_in(group: &Path) -> Option<u64> {
@@ -64,6 +69,28 @@ mod tests {
         assert_eq!(left_in(folder.path()), None);
         fs::write(folder.path().join("memory.max"), "350\n").unwrap();
         assert_eq!(left_in(folder.path()), Some(250));
+    }
+
+    #[test]
+    fn a_group_has_no_more_than_those_that_it_lies_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        assert_eq!(least_left(root, "outer/middle/inner"), None);
+        fs::create_dir_all(root.join("outer/middle/inner")).unwrap();
+        let set = |group: &str, most: &str, current: &str| {
+            fs::write(root.join(group).join("memory.max"), format!("{most}\n")).unwrap();
+            fs::write(root.join(group).join("memory.current"), format!("{current}\n")).unwrap();
+        };
+        set("outer/middle/inner", "900", "100");
+        set("outer/middle", "max", "150");
+        set("outer", "300", "200");
+        let left = || ["outer/middle/inner", "outer/middle", "outer", ""].map(|group| least_left(root, group));
+        assert_eq!(left(), [Some(100), Some(100), Some(100), None]);
+        set("outer/middle/inner", "130", "100");
+        assert_eq!(left(), [Some(30), Some(100), Some(100), None]);
+        // The root has a limit where it is a container's own.
+        set("", "210", "200");
+        assert_eq!(left(), [Some(10); 4]);
     }
 
     #[test]

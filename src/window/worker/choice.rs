@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 
 use crate::gpu::Compiler;
 use crate::measure::parameter::{self, Given, Parameter};
-use crate::measure::study::{ONE_ALTERNATIVE, Preset, Study};
+use crate::measure::study::{Preset, Study, check_one};
 use crate::measure::{Error, Variant};
 use crate::scene::Camera;
 use crate::window::protocol::{Assignment, Lens, SideChoice, SideSetup};
@@ -91,9 +91,7 @@ impl Choice {
         }
         study.resolve(&self.given())?;
         parameter::check(&parameters, &study)?;
-        if study.alternatives().len() > 1 {
-            return Err(Error::Input(ONE_ALTERNATIVE.to_owned()));
-        }
+        check_one(&study)?;
         let named = side.variant.as_ref().map(|name| variant::<S>(name)).transpose()?;
         let variant = named.unwrap_or_else(|| study.rendered(preset.and_then(|preset| preset.variant)));
         let compiler = match side.compiler.as_deref() {

@@ -10,11 +10,21 @@ use crate::measure::study::Study;
 use crate::window::protocol::{self, Difference, Event, SideFrame, Thumbnail};
 
 impl<S: Study> State<S> {
-    /// The frame that is drawn, with all that is wanted beside its picture.
+    /// The frame that is drawn, under the next number. One that fails leaves neither its number nor its blocks behind: the
+    /// window never hears of it, and so never takes it.
     ///
     /// # Errors
     /// Those of the Vulkan layer, and of a file that cannot grow.
-    pub(super) fn frame(&mut self, number: u32, samples: &[FrameSample]) -> Result<protocol::Frame, Error> {
+    pub(super) fn next_frame(&mut self, number: u32, samples: &[FrameSample]) -> Result<protocol::Frame, Error> {
+        self.serial += 1;
+        self.frame(number, samples).inspect_err(|_| {
+            self.exchange.withdraw(self.serial);
+            self.serial -= 1;
+        })
+    }
+
+    /// The frame of the last number, with all that is wanted beside its picture.
+    fn frame(&mut self, number: u32, samples: &[FrameSample]) -> Result<protocol::Frame, Error> {
         let State { sides, machine, exchange, serial, wanted, outbox, .. } = self;
         let serial = *serial;
         let pictures = sides.iter().map(|side| side.picture(machine)).collect::<Result<Vec<_>, _>>()?;

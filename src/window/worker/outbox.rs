@@ -79,6 +79,11 @@ impl Exchange {
     pub fn free(&mut self, serial: u64) {
         self.used.retain(|used| used.serial > serial);
     }
+
+    /// Frees the blocks of frame `serial` alone, which nobody was told of.
+    pub fn withdraw(&mut self, serial: u64) {
+        self.used.retain(|used| used.serial != serial);
+    }
 }
 
 #[cfg(test)]
@@ -101,5 +106,15 @@ mod tests {
         assert_eq!(exchange.put(3, &[5; 9000]).unwrap().offset, 16384);
         exchange.free(3);
         assert_eq!(exchange.put(4, &[6; 1]).unwrap().offset, 0);
+    }
+
+    #[test]
+    fn a_frame_that_is_withdrawn_leaves_its_place_and_no_other() {
+        let file = crate::file::exchange().unwrap();
+        let mut exchange = Exchange::open(file.path()).unwrap();
+        let offsets = [1, 2, 2].map(|serial| exchange.put(serial, &[0; 10]).unwrap().offset);
+        assert_eq!(offsets, [0, 4096, 8192]);
+        exchange.withdraw(2);
+        assert_eq!(exchange.put(2, &[0; 10]).unwrap().offset, 4096);
     }
 }

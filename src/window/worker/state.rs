@@ -428,9 +428,8 @@ impl<S: Study> State<S> {
             let sides = self.sides.iter().map(Side::built).collect();
             self.outbox.tell(&Event::Built(Built { heeds: self.heeds, sides }));
         }
-        self.serial += 1;
+        let frame = self.next_frame(number, &samples)?;
         (self.shown, self.wants_more) = (number, false);
-        let frame = self.frame(number, &samples)?;
         self.outbox.tell(&Event::Frame(Box::new(frame)));
         if self.clock.is_playing && (self.wanted.measure.times > 0 || self.wanted.measure.counters) {
             self.tell_times();

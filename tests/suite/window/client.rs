@@ -49,15 +49,17 @@ fn only_the_last_words_are_kept_and_a_signal_is_named() {
 }
 
 #[test]
-fn pictures_that_are_not_there_are_a_problem_and_not_a_crash() {
+fn pictures_that_are_not_there_are_a_problem_and_their_frame_is_taken_all_the_same() {
     let picture = r#"{"width":1,"height":1,"block":{"offset":4,"len":99999999999999}}"#;
     let side = format!(r#"{{"picture":{picture},"frame_ms":1,"written":[]}}"#);
     let frame = format!(
         r#"{{"frame":{{"serial":1,"heeds":0,"number":0,"is_playing":false,"speed":1,"after":null,"sides":[{side}],"difference":null,"target":null,"thumbnails":[]}}}}"#
     );
-    let mut client = shell(&format!("echo '{frame}'"));
+    let mut client = shell(&format!(r#"echo '{frame}'; read -r heard; echo "$heard" >&2"#));
     let events = events(&mut client);
-    assert!(matches!(&events[0], Event::Failed { problem, .. } if problem.contains("pictures")), "{events:?}");
+    let [Event::Failed { problem, .. }, Event::Ended(last)] = &events[..] else { panic!("{events:?}") };
+    assert!(problem.contains("pictures"), "{problem}");
+    assert_eq!(last.stderr, [r#"{"id":1,"request":{"taken":1}}"#]);
 }
 
 #[test]

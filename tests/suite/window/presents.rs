@@ -67,6 +67,28 @@ fn goes_on(with_layer: impl FnOnce(&Layer, Program) -> Program) -> String {
 }
 
 #[test]
+fn a_display_that_is_never_content_gets_no_swapchain_for_each_picture() {
+    beside_others(|| {
+        let display = Display::start();
+        let layer = Layer::new();
+        let program = fumarole(&format!("view caustics {}", small("caustics"))).on_test_device();
+        let endings: Vec<String> = (1..=500).map(|present| format!("present@{present}=suboptimal")).collect();
+        let program = layer.before(program, false).env("FUMAROLE_LAYER_PRESENTS", endings.join(","));
+        let mut window = Window::start(&display, program);
+        window.wait_for_frame(0);
+        for frame in 1..=16 {
+            display.key('.' as u32);
+            window.wait_for_frame(frame);
+        }
+        let ended = window.close().succeeded();
+        let presented = ended.stderr.matches("layer: present@").count();
+        // A second one of the first size, and one more where the window gets another.
+        let made = layer.report(&ended).count("vkCreateSwapchainKHR");
+        assert!(made >= 2 && 2 * made < presented, "{made} swapchains for {presented} pictures: {}", ended.stderr);
+    });
+}
+
+#[test]
 fn a_device_that_is_lost_while_presenting_ends_the_window_in_a_line() {
     beside_others(|| {
         let display = Display::start();

@@ -1,6 +1,7 @@
 //! Impossible requests, and the end of a worker: it says so in a line, and never stays behind.
 
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -111,10 +112,15 @@ fn a_killed_worker_is_an_event_and_a_device_that_is_not_there_an_exit_code() {
 /// A worker whose other end is this test itself.
 fn bare(options: &str) -> (Child, tempfile::NamedTempFile) {
     let exchange = tempfile::NamedTempFile::new().unwrap();
+    (bare_with(options, exchange.path()), exchange)
+}
+
+/// As [`bare`], with this file for its pictures.
+fn bare_with(options: &str, exchange: &Path) -> Child {
     let mut command = Command::new(program());
-    command.args(words(options)).arg("--device").arg(wanted_device()).arg("--exchange").arg(exchange.path());
+    command.args(words(options)).arg("--device").arg(wanted_device()).arg("--exchange").arg(exchange);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-    (command.spawn().unwrap(), exchange)
+    command.spawn().unwrap()
 }
 
 /// Seconds until it has ended.
@@ -157,5 +163,29 @@ fn lines_that_are_no_requests_are_told_of_and_do_no_harm() {
         let mut told = String::new();
         child.stdout.take().unwrap().read_to_string(&mut told).unwrap();
         assert_eq!(told.matches("reading a request").count(), 4, "{told}");
+    });
+}
+
+#[test]
+fn frames_that_find_no_room_are_told_of_one_by_one_and_the_next_is_tried() {
+    beside_others(|| {
+        let folder = tempfile::tempdir().unwrap();
+        // The worker takes the name away, which is the link's alone.
+        let full = folder.path().join("full");
+        std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+        let mut child = bare_with(&format!("gas worker {}", small("gas")), &full);
+        let mut input = child.stdin.take().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+        let is_failure = |line: &String| line.starts_with(r#"{"failed":"#) && line.contains("to the window");
+        assert!(lines.any(|line| is_failure(&line)), "the first");
+        writeln!(input, r#"{{"id":1,"request":{{"step":1}}}}"#).unwrap();
+        assert!(lines.any(|line| is_failure(&line)), "the second");
+        // What is asked for last is told after the frame that is asked for before it.
+        writeln!(input, r#"{{"id":2,"request":{{"step":1}}}}"#).unwrap();
+        writeln!(input, r#"{{"id":3,"request":"memory"}}"#).unwrap();
+        let told: Vec<String> = lines.by_ref().take_while(|line| !line.starts_with(r#"{"memory":"#)).collect();
+        assert_eq!(told.iter().filter(|line| is_failure(line)).count(), 1, "{told:?}");
+        drop(input);
+        assert!(ended(&mut child) < 60.0);
     });
 }
