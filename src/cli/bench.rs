@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use super::failure::Failure;
-use super::options::{CaptureTool, CommonArgs, DepthArgs, MeasureArgs, OutputArgs};
+use super::options::{CaptureTool, CommonArgs, DepthArgs, FRAMES, MeasureArgs, OutputArgs, REPEAT};
 use super::outcome;
 use super::processes;
 use super::spelling;
@@ -22,10 +22,6 @@ use crate::measure::{Error, Paper, Variant};
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
 use crate::report::{Record, environment};
-
-/// Frames and repetitions of a bench that names none.
-const FRAMES: u32 = 10;
-const REPEAT: u32 = 3;
 
 /// Measures `variants` of a study, or has fresh processes measure them, and publishes the record where `common` says, which
 /// has been checked.

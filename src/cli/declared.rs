@@ -8,7 +8,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::failure::Failure;
-use super::options::{CommonArgs, DepthArgs, MachineArgs};
+use super::options::{CommonArgs, DepthArgs, FRAMES_HELP, MachineArgs, REPEAT_HELP};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
@@ -16,12 +16,12 @@ use super::{bench, help, loading, passes, render, spelling};
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
-use crate::measure::study::{ONE_ALTERNATIVE, Preset, Study};
+use crate::measure::study::{Preset, Study, check_one};
 use crate::measure::{Error, Variant};
 
 /// The command of a paper with all its verbs.
 pub fn command<S: Study>() -> Command {
-    Command::new(S::PAPER)
+    help::whole(Command::new(S::PAPER))
         .about(S::ABOUT)
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -43,7 +43,8 @@ fn window_commands<S: Study>() -> Vec<Command> {
         };
         let view = super::view::command(scene("view", "One variant, or two beside each other"));
         let about = "Open a window: live passes, targets, variants side by side, parameters";
-        vec![finish::<S>(view, about), super::worker::command(scene("worker", "Variants"))]
+        let worker = help::whole(super::worker::command(scene("worker", "Variants")));
+        vec![finish::<S>(view, about), worker]
     }
     #[cfg(not(feature = "window"))]
     Vec::new()
@@ -82,6 +83,11 @@ fn experiment_command<S: Study>() -> Command {
         .arg(assembled_argument())
         .args(options(&own, &S::Options::default()));
     let command = CommonArgs::augment_args(with_scene::<S>(command));
+    let (frames, repeat) = S::EXPERIMENT_FRAMES;
+    let default = |number: u32| format!("[default: {number}, or the experiment's own number]");
+    let command = command
+        .mut_arg("frames", |arg| arg.help(format!("{FRAMES_HELP} {}", default(frames))))
+        .mut_arg("repeat", |arg| arg.help(format!("{REPEAT_HELP} {}", default(repeat))));
     finish::<S>(command, "Reproduce one table or figure, ours beside the paper's")
 }
 
@@ -189,9 +195,12 @@ fn arguments<S: 'static>(parameter: &Parameter<S>, default: &S) -> Vec<Arg> {
     let option = |name: String| Arg::new(name.clone()).long(name).help_heading(parameter.group);
     if shape.is_flag {
         // The one that changes nothing is taken and not listed.
-        let [flag, other] = [(parameter.name.to_owned(), is_on), (opposite(parameter.name), !is_on)]
-            .map(|(name, hidden)| option(name).action(ArgAction::SetTrue).help(help(parameter, default)).hide(hidden));
-        return vec![flag.overrides_with(opposite(parameter.name)), other.overrides_with(parameter.name)];
+        let help = help(parameter, default);
+        let flag = option(parameter.name.to_owned()).help(&help).hide(is_on);
+        let other = option(opposite(parameter.name)).help(help::switched_off(&help)).hide(!is_on);
+        let overridden = [opposite(parameter.name), parameter.name.to_owned()];
+        let switches = [flag, other].map(|switch| switch.action(ArgAction::SetTrue));
+        return switches.into_iter().zip(overridden).map(|(switch, other)| switch.overrides_with(other)).collect();
     }
     let action = if shape.is_list { ArgAction::Append } else { ArgAction::Set };
     let arg = option(parameter.name.to_owned())
@@ -283,10 +292,8 @@ impl<'a, S: Study> Typed<'a, S> {
     /// [`Failure::Input`] where there are several to be measured in turn.
     fn resolve_one(&self) -> Result<S, Failure> {
         let setup = self.resolve()?;
-        match setup.alternatives().len() {
-            1 => Ok(setup),
-            _ => Err(Failure::Input(ONE_ALTERNATIVE.to_owned())),
-        }
+        check_one(&setup)?;
+        Ok(setup)
     }
 
     fn preset_variant(&self) -> Option<S::Variant> {

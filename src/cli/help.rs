@@ -43,3 +43,33 @@ pub fn shortened(command: Command, everyday: &[&str]) -> Command {
         .after_help(format!("All {all} options, by group: --help-all"))
         .after_long_help("")
 }
+
+/// The command whose `--help` lists every option, and whose `--help-all` is the same.
+pub fn whole(command: Command) -> Command {
+    let help = Arg::new("help").short('h').long("help").alias("help-all").action(ArgAction::Help);
+    command.disable_help_flag(true).arg(help.help("Print help").help_heading(None))
+}
+
+/// Help of the option that switches off what the help of its opposite tells of.
+pub fn switched_off(help: &str) -> String {
+    let mut characters = help.chars();
+    let first = characters.next().into_iter();
+    // Not of a name in capitals.
+    let is_word = characters.clone().next().is_none_or(|second| !second.is_uppercase());
+    let first: String = if is_word { first.flat_map(char::to_lowercase).collect() } else { first.collect() };
+    format!("Switch off: {first}{}", characters.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opposites_tell_of_what_they_switch_off() {
+        assert_eq!(switched_off("Draw the ground"), "Switch off: draw the ground");
+        assert_eq!(switched_off("solid: let ash leave"), "Switch off: solid: let ash leave");
+        assert_eq!(switched_off("SPH in place of it"), "Switch off: SPH in place of it");
+        assert_eq!(switched_off("A part"), "Switch off: a part");
+        assert_eq!(switched_off(""), "Switch off: ");
+    }
+}

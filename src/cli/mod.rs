@@ -28,9 +28,10 @@ mod watch;
 mod worker;
 
 use std::convert::Infallible;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
@@ -48,7 +49,7 @@ struct Umbrella {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// List the Vulkan devices and which papers they are capable of
+    /// List the Vulkan devices and which papers they can run
     Devices(devices::DevicesArgs),
     /// Every paper's quick benchmark; also what plain `fumarole` runs
     All(all::AllArgs),
@@ -62,7 +63,6 @@ enum Command {
     Stress(stress::StressAllArgs),
     /// Open a window on a paper: `fumarole view [PAPER] [OPTIONS]`, as `fumarole PAPER view`
     #[cfg(feature = "window")]
-    #[command(disable_help_flag = true)]
     View,
     /// Measure two sides in turn, in fresh processes, until it is certain which is faster
     Ab(ab::AbArgs),
@@ -122,13 +122,29 @@ fn listed() -> Vec<Paper> {
 
 /// The command with every paper below it.
 fn umbrella_command(papers: &[Paper]) -> clap::Command {
-    let program = Umbrella::command().mut_subcommands(|verb| {
+    let program = help::whole(Umbrella::command()).mut_subcommands(|verb| {
         match help::OF_PROGRAM.iter().find(|(name, _)| *name == verb.get_name()) {
             Some((_, everyday)) => help::shortened(verb, everyday),
-            None => verb,
+            None => help::whole(verb),
         }
     });
+    #[cfg(feature = "window")]
+    let program = program.mut_subcommand("view", |view| view::before_paper(view, papers));
     program.subcommands(papers.iter().map(|paper| (paper.command)()))
+}
+
+/// Names of papers as a message lists them.
+fn paper_names<'a>(papers: impl IntoIterator<Item = &'a Paper>) -> String {
+    papers.into_iter().map(|paper| paper.name).collect::<Vec<_>>().join(", ")
+}
+
+/// The refusal of a verb of papers that no paper was named for.
+fn without_paper(verb: &OsStr, papers: &[Paper]) -> Option<Failure> {
+    let verb = verb.to_str()?;
+    let has_verb = |paper: &&Paper| (paper.command)().find_subcommand(verb).is_some_and(|found| !found.is_hide_set());
+    let names = paper_names(papers.iter().filter(has_verb));
+    let message = format!("{verb}: give a paper first: fumarole PAPER {verb}; PAPER is one of {names}");
+    (!names.is_empty()).then_some(Failure::Input(message))
 }
 
 /// Runs `fumarole`.
@@ -140,11 +156,21 @@ pub fn umbrella() -> ExitCode {
     spelling::learn(&command);
     let arguments = std::env::args_os().collect();
     #[cfg(feature = "window")]
-    let arguments: Vec<OsString> = view::reordered(arguments);
+    let arguments: Vec<OsString> = match view::reordered(arguments) {
+        Ok(arguments) => arguments,
+        Err(failure) => return end(Err(failure)),
+    };
     let arguments = ab::reordered(arguments, &papers);
+    let first = arguments.get(1).cloned().unwrap_or_default();
     let matches = match command.try_get_matches_from(arguments) {
         Ok(matches) => matches,
-        Err(error) => return ExitCode::from(outcome::usage(&error)),
+        Err(error) => {
+            let misplaced = Some(first).filter(|_| error.kind() == ErrorKind::InvalidSubcommand);
+            return match misplaced.and_then(|verb| without_paper(&verb, &papers)) {
+                Some(failure) => end(Err(failure)),
+                None => ExitCode::from(outcome::usage(&error)),
+            };
+        }
     };
     if let Some((name, matches)) = matches.subcommand()
         && let Some(paper) = papers.iter().find(|paper| paper.name == name)

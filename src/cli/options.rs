@@ -134,17 +134,28 @@ impl MachineArgs {
     }
 }
 
+/// Help of `--frames`, without its default.
+pub const FRAMES_HELP: &str = "Frames in one repetition, 1 to 100000";
+/// Help of `--repeat`, without its default.
+pub const REPEAT_HELP: &str = "Repetitions of those frames, 1 to 10000";
+/// Frames of a repetition of `bench`.
+pub const FRAMES: u32 = 10;
+/// Repetitions of `bench`.
+pub const REPEAT: u32 = 3;
+
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Measuring")]
 pub struct MeasureArgs {
     /// Frames before anything counts, 1 to 10000
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub warmup: u32,
-    /// Frames in one repetition, 1 to 100000 [default: 10, in an experiment 3]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Frames in one repetition.
+    #[arg(long, value_name = "N", help = format!("{FRAMES_HELP} [default: {FRAMES}]"))]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: Option<u32>,
-    /// Repetitions of those frames, 1 to 10000 [default: 3]
-    #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    /// Repetitions of those frames.
+    #[arg(long, value_name = "R", help = format!("{REPEAT_HELP} [default: {REPEAT}]"))]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub repeat: Option<u32>,
     /// Repeat until plain frames took this many seconds, 0 to 3600
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds, allow_negative_numbers = true)]

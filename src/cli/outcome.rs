@@ -172,7 +172,9 @@ pub fn save(output: &OutputArgs, path: &Path, bytes: &[u8]) -> Result<(), Failur
 
 /// Entries of a folder, by name.
 pub fn listed(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let failed = |e: io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
+    let failed = |e: io::Error| {
+        Failure::Input(format!("listing the folder {}: {e}; name a folder that can be read", folder.display()))
+    };
     let paths = |entries: fs::ReadDir| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
     let mut paths = fs::read_dir(folder).and_then(paths).map_err(failed)?;
     paths.sort();

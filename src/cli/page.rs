@@ -1,6 +1,6 @@
 //! The table of a paper's options, as its page shows it.
 
-use super::spelling;
+use super::{help, spelling};
 use crate::measure::parameter::Parameter;
 use crate::measure::study::Study;
 
@@ -32,13 +32,15 @@ pub fn axes_table<S: Study>() -> String {
 
 fn parameter_row<S: 'static>(parameter: &Parameter<S>, default: &S) -> String {
     let shape = parameter.shape();
+    let is_opposite = shape.is_flag && parameter.text(default) == "on";
     let (option, value) = if shape.is_flag {
-        let prefix = if parameter.text(default) == "on" { "no-" } else { "" };
+        let prefix = if is_opposite { "no-" } else { "" };
         (format!("--{prefix}{}", parameter.name), "off".to_owned())
     } else {
         (format!("--{} {}", parameter.name, parameter.placeholder), parameter.default_of(default))
     };
-    let mut meaning = spelling::every(parameter.help);
+    let meaning = spelling::every(parameter.help);
+    let mut meaning = if is_opposite { help::switched_off(&meaning) } else { meaning };
     if !shape.choices.is_empty() {
         let choices: Vec<String> = shape.choices.iter().map(|(name, help)| format!("`{name}`: {help}")).collect();
         meaning += &format!(". {}", choices.join("; "));

@@ -7,9 +7,9 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 
 use super::failure::Failure;
-use super::listed;
 use super::options::{MachineArgs, number_in};
 use super::watch::on_interruption;
+use super::{Paper, listed, paper_names};
 use crate::gpu::swapchain::PresentMode;
 use crate::measure::study::Study;
 use crate::window;
@@ -126,10 +126,18 @@ fn typed(matches: &ArgMatches, is_wanted: impl Fn(&str) -> bool) -> Vec<OsString
     arguments
 }
 
-/// `fumarole view [PAPER] ...` as `fumarole PAPER view ...`; without a paper the first of the list.
-pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
+/// `fumarole view [PAPER] ...` as `fumarole PAPER view ...`; without a paper the first of the list, or where help is asked for
+/// alone, as it is.
+///
+/// # Errors
+/// [`Failure::Input`] for a word that names no paper.
+pub fn reordered(arguments: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     if arguments.get(1).is_none_or(|verb| verb != "view") {
-        return arguments;
+        return Ok(arguments);
+    }
+    let asks_for_help = |argument: &OsString| ["-h", "--help", "--help-all"].iter().any(|help| argument == help);
+    if arguments.get(2).is_some_and(asks_for_help) {
+        return Ok(arguments);
     }
     let papers = listed();
     let mut rest = arguments.into_iter();
@@ -137,9 +145,24 @@ pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
     let verb = rest.next().unwrap_or_default();
     let mut rest = rest.peekable();
     let named = rest.next_if(|argument| papers.iter().any(|paper| argument == paper.name));
+    if named.is_none()
+        && let Some(word) = rest.peek().map(|word| word.to_string_lossy()).filter(|word| !word.starts_with('-'))
+    {
+        let names = paper_names(&papers);
+        return Err(Failure::Input(format!("view {word}: there is no such paper; name one of {names}")));
+    }
     let first = papers.first().map_or("", |paper| paper.name);
     let paper = named.unwrap_or_else(|| OsString::from(first));
-    [program, paper, verb].into_iter().chain(rest).collect()
+    Ok([program, paper, verb].into_iter().chain(rest).collect())
+}
+
+/// The verb before a paper is named, as help tells of it.
+pub fn before_paper(command: Command, papers: &[Paper]) -> Command {
+    let usage = "fumarole view [PAPER] [OPTIONS]";
+    let names = paper_names(papers);
+    command.override_usage(usage).after_help(format!(
+        "PAPER is one of {names}; without it the first. Options, of each paper its own: fumarole view PAPER --help"
+    ))
 }
 
 #[cfg(test)]
@@ -152,9 +175,17 @@ mod tests {
 
     #[test]
     fn the_paper_may_follow_the_verb_or_be_left_out() {
-        assert_eq!(reordered(arguments("fumarole view gas --frame 3")), arguments("fumarole gas view --frame 3"));
-        assert_eq!(reordered(arguments("fumarole view --frame 3")), arguments("fumarole lava view --frame 3"));
-        assert_eq!(reordered(arguments("fumarole gas view")), arguments("fumarole gas view"));
-        assert_eq!(reordered(arguments("fumarole")), arguments("fumarole"));
+        for (typed, expected) in [
+            ("fumarole view gas --frame 3", "fumarole gas view --frame 3"),
+            ("fumarole view gas --help", "fumarole gas view --help"),
+            ("fumarole view --frame 3", "fumarole lava view --frame 3"),
+            ("fumarole view --help", "fumarole view --help"),
+            ("fumarole gas view", "fumarole gas view"),
+            ("fumarole", "fumarole"),
+        ] {
+            assert_eq!(reordered(arguments(typed)).unwrap(), arguments(expected));
+        }
+        let refused = reordered(arguments("fumarole view foo")).unwrap_err().to_string();
+        assert!(refused.starts_with("view foo: ") && refused.contains("lava, gas"), "{refused}");
     }
 }

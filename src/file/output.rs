@@ -5,8 +5,8 @@
 //! written to directly.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
@@ -96,26 +96,47 @@ pub fn write_with(
             let mut stream = File::options().write(true).open(path).map_err(failed)?;
             buffered(&mut stream, fill).map_err(failed)
         }
-        Destination::File(target) => replace(&target, fill, true).map_err(failed),
+        Destination::File(target) => {
+            create_directory(&parent(&target))?;
+            replace(&target, fill, true).map_err(failed)
+        }
     }
 }
 
-/// Finds out, before a long run, whether [`write()`] to `path` can succeed: makes the directory, and a temporary file
-/// in it that is removed again; what killed processes left there is removed too. An older file at `path` is not touched.
+/// Finds out, before a long run, whether [`write()`] to `path` can succeed: makes a temporary file in the directory, or in the one
+/// that it would be made in, and removes it again; what killed processes left there is removed too. An older file at `path` is not
+/// touched.
 ///
 /// # Errors
 /// As [`write()`].
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
-    let opened = match Destination::find(path)? {
+    let failed = |source| OutputError::Write { path: path.to_owned(), source };
+    match Destination::find(path)? {
         // Its reader would take the end of this for the end of what is written later.
         Destination::Stream if is_fifo(path) => Ok(()),
-        Destination::Stream => File::options().write(true).open(path).map(drop),
+        Destination::Stream => File::options().write(true).open(path).map(drop).map_err(failed),
         Destination::File(target) => {
-            temporary::sweep(&parent(&target));
-            create_beside(&target).and_then(NamedTempFile::close)
+            let directory = parent(&target);
+            let uncreated = |source| OutputError::CreateDirectory { path: directory.clone(), source };
+            let there = nearest(&directory).map_err(uncreated)?;
+            temporary::sweep(&there);
+            let made = temporary::create(&there).and_then(NamedTempFile::close);
+            made.map_err(|source| if there == directory { failed(source) } else { uncreated(source) })
         }
-    };
-    opened.map_err(|source| OutputError::Write { path: path.to_owned(), source })
+    }
+}
+
+/// The directory, or else the nearest one above it that is there: what is between would be made.
+fn nearest(directory: &Path) -> io::Result<PathBuf> {
+    for above in directory.ancestors().filter(|above| !above.as_os_str().is_empty()) {
+        match fs::symlink_metadata(above) {
+            Ok(_) if above.is_dir() => return Ok(above.to_owned()),
+            Ok(_) => return Err(ErrorKind::NotADirectory.into()),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(PathBuf::from("."))
 }
 
 /// The regular file that `path` names or would name, every link followed; `None` for a device or a pipe, and where there can be
@@ -127,8 +148,24 @@ pub fn destination(path: &Path) -> Option<PathBuf> {
         Err(_) => followed(path).ok()?,
     };
     // A file that is not there yet has its folder's place.
-    let folder = fs::canonicalize(parent(&target));
-    fs::canonicalize(&target).ok().or_else(|| Some(folder.ok()?.join(target.file_name()?)))
+    let in_folder = || Some(placed(&parent(&target))?.join(target.file_name()?));
+    fs::canonicalize(&target).ok().or_else(in_folder)
+}
+
+/// The place of a directory, of which the end need not be there yet.
+fn placed(directory: &Path) -> Option<PathBuf> {
+    let there = nearest(directory).ok()?;
+    let mut place = fs::canonicalize(&there).ok()?;
+    for component in directory.strip_prefix(&there).unwrap_or(directory).components() {
+        match component {
+            Component::ParentDir => {
+                place.pop();
+            }
+            Component::Normal(name) => place.push(name),
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+        }
+    }
+    Some(place)
 }
 
 fn buffered(file: &mut File, fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> io::Result<()> {
@@ -138,7 +175,7 @@ fn buffered(file: &mut File, fill: impl FnOnce(&mut BufWriter<&mut File>) -> io:
 }
 
 enum Destination {
-    /// A regular file or a name not yet taken, symbolic links resolved, in a directory that exists.
+    /// A regular file or a name not yet taken, symbolic links resolved, in a directory that may not exist yet.
     File(PathBuf),
     /// A device or a pipe.
     Stream,
@@ -153,7 +190,6 @@ impl Destination {
             }
             // A link to what is not there yet makes it there, as a link to an older file replaces that.
             let target = followed(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
-            create_directory(&parent(&target))?;
             return Ok(Self::File(target));
         };
         if metadata.is_dir() {
@@ -249,12 +285,20 @@ mod tests {
     }
 
     #[test]
-    fn checking_makes_the_directory_and_no_file() {
+    fn checking_makes_nothing() {
         let root = tempfile::tempdir().unwrap();
-        let path = root.path().join("out/result.json");
-        check_writable(&path).unwrap();
+        for path in ["out/result.json", "out/deep/er/result.json", "result.json"] {
+            check_writable(&root.path().join(path)).unwrap();
+            assert!(entries(root.path()).is_empty(), "{path}");
+        }
+        write(&root.path().join("out/deep/er/result.json"), b"x").unwrap();
         assert_eq!(entries(root.path()), ["out"]);
-        assert!(entries(&root.path().join("out")).is_empty());
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("gone", root.path().join("dangling")).unwrap();
+            let error = check_writable(&root.path().join("dangling/result.json")).unwrap_err();
+            assert!(matches!(error, OutputError::CreateDirectory { .. }), "{error}");
+        }
     }
 
     #[test]
@@ -316,6 +360,11 @@ mod tests {
             assert_ne!(destination(&folder.join("a")).as_ref(), Some(&found), "{is_there}");
             fs::write(&file, "x").unwrap();
         }
+        // Nor need their folders be there.
+        let new = destination(&root.path().join("new/er/a")).unwrap();
+        assert_eq!(destination(&root.path().join("new/./er/../er/a")).as_ref(), Some(&new));
+        assert_eq!(destination(&folder.join("../new/er/a")).as_ref(), Some(&new));
+        assert_ne!(destination(&root.path().join("new/a")).as_ref(), Some(&new));
         assert_eq!(destination(&folder), None);
         #[cfg(unix)]
         assert_eq!(destination(Path::new("/dev/null")), None);

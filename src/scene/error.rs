@@ -30,6 +30,22 @@ pub enum Error {
         /// Endings that are read as such contents.
         known: String,
     },
+    #[error("cannot load {asset} {}: there is no such file, and none of that name is built in; name {known}", path.display())]
+    UnknownName {
+        /// Name that stands for no file.
+        path: PathBuf,
+        /// Contents that were expected.
+        asset: Asset,
+        /// Names and files that are read as such contents.
+        known: String,
+    },
+    #[error("cannot load mesh {}: the number after the colon, of triangles that a mesh is divided into, must be 1 to {most}", path.display())]
+    Division {
+        /// The mesh and the number.
+        path: PathBuf,
+        /// Most triangles that a mesh is divided into.
+        most: u64,
+    },
     #[error("cannot load {asset} {}: {fault}", path.display())]
     Malformed {
         /// File that was read.
@@ -63,6 +79,17 @@ pub enum Asset {
     HeightMap,
     Volume,
     WorldFile,
+}
+
+impl Asset {
+    /// Names of those that the program carries; none of contents of which there is none.
+    pub(super) fn built_in(self) -> Option<&'static str> {
+        match self {
+            Self::Mesh => Some("teapot, sphere, box, bunny, plane"),
+            Self::HeightMap => Some("volcano, maunga-whau, jacksboro"),
+            Self::Volume | Self::WorldFile => None,
+        }
+    }
 }
 
 /// A fault in the contents of a mesh, a height map or a volume, with its place.

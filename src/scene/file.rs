@@ -14,11 +14,24 @@ pub(super) fn open(path: &Path, asset: Asset) -> Result<(File, u64), Error> {
 
 /// The error of a file that cannot be read.
 pub(super) fn failed(path: &Path, asset: Asset, source: io::Error) -> Error {
+    let is_name = source.kind() == ErrorKind::NotFound && path.extension().is_none();
     let path = path.to_owned();
-    if source.kind() == ErrorKind::InvalidInput {
-        Error::NotAFile { path, asset }
-    } else {
-        Error::Read { path, source }
+    match (source.kind(), asset.built_in()) {
+        (ErrorKind::InvalidInput, _) => Error::NotAFile { path, asset },
+        (_, Some(names)) if is_name => Error::UnknownName { path, asset, known: format!("{names}, or a file") },
+        _ => Error::Read { path, source },
+    }
+}
+
+/// The error of a file with an ending that is not known, or of a name that no file has.
+pub(super) fn of_unknown_ending(path: &Path, asset: Asset, ending: &str, known: String) -> Error {
+    let is_missing = std::fs::symlink_metadata(path).is_err_and(|error| error.kind() == ErrorKind::NotFound);
+    let (path, ending) = (path.to_owned(), ending.to_owned());
+    match asset.built_in() {
+        Some(names) if is_missing && ending.is_empty() => {
+            Error::UnknownName { path, asset, known: format!("{names}, or a file that ends in {known}") }
+        }
+        _ => Error::UnknownEnding { path, asset, ending, known },
     }
 }
 

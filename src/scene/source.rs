@@ -32,6 +32,17 @@ impl MeshSource {
     /// Most triangles that a mesh is divided into: twice the largest that any paper holds on a large device.
     pub const MOST_DIVIDED: u64 = 200_000_000;
 
+    /// Refuses a name with a number of triangles behind a colon that no mesh is divided into.
+    fn check_division(path: &Path) -> Result<(), Error> {
+        let text = path.to_string_lossy();
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        let is_division = text.rsplit_once(':').is_some_and(|(mesh, count)| !mesh.is_empty() && is_number(count));
+        if is_division && std::fs::symlink_metadata(path).is_err() {
+            return Err(Error::Division { path: path.to_owned(), most: Self::MOST_DIVIDED });
+        }
+        Ok(())
+    }
+
     /// The mesh with at least `triangles`; one that was to be divided already, by the new number.
     pub fn divided(&self, triangles: u64) -> Self {
         match self {
@@ -77,7 +88,10 @@ impl MeshSource {
             Self::Box => shapes::cuboid(),
             Self::Bunny => formats::bunny()?,
             Self::Plane => shapes::plane(Vec2::splat(2.0), UVec2::splat(32)),
-            Self::File(path) => return formats::load(path, options, conditions),
+            Self::File(path) => {
+                Self::check_division(path)?;
+                return formats::load(path, options, conditions);
+            }
             Self::Divided(source, triangles) => {
                 let whole = MeshOptions { is_optimised: false, ..*options };
                 divided(&source.load_under(&whole, conditions)?, *triangles)
@@ -95,7 +109,10 @@ impl MeshSource {
     /// As [`MeshSource::load`], of what stands before the triangles.
     pub fn promised_triangles(&self) -> Result<Option<u64>, Error> {
         match self {
-            Self::File(path) => formats::promised_triangles(path),
+            Self::File(path) => {
+                Self::check_division(path)?;
+                formats::promised_triangles(path)
+            }
             Self::Divided(source, triangles) => Ok(source.promised_triangles()?.max(Some(*triangles))),
             _ => Ok(None),
         }
@@ -150,6 +167,7 @@ impl fmt::Display for MeshSource {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::error::Asset;
 
     #[test]
     fn text_round_trips() {
@@ -178,6 +196,31 @@ mod tests {
         let Ok(source) = "bunny:8000".parse::<MeshSource>();
         assert_eq!(source.load().unwrap().triangle_count(), 3 * 3674);
         assert_eq!(source.divided(9).to_string(), "bunny:9");
+    }
+
+    #[test]
+    fn misspelt_names_and_numbers_are_told_what_there_is() {
+        let of = |text: &str| {
+            let Ok(source) = text.parse::<MeshSource>();
+            let errors = [source.load().unwrap_err(), source.promised_triangles().unwrap_err()];
+            let [one, other] = errors.map(|error| error.to_string());
+            assert_eq!(one, other);
+            one
+        };
+        let names = Asset::Mesh.built_in().unwrap();
+        for name in names.split(", ") {
+            let Ok(source) = name.parse::<MeshSource>();
+            assert!(source.path().is_none(), "{name}");
+        }
+        for text in ["bunnny", "bunnny:100", ":12", ""] {
+            let message = of(text);
+            assert!(message.contains(names) && message.contains(".obj"), "{message}");
+        }
+        for text in ["bunny:0", "bunny:99999999999999999999", "a.obj:200000001"] {
+            let message = of(text);
+            assert!(message.contains(text) && message.contains("1 to 200000000"), "{message}");
+        }
+        assert!(of("bunny.xyz").contains("unknown file ending \"xyz\""));
     }
 
     #[test]

@@ -56,13 +56,16 @@ pub struct StressArgs {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frames before anything counts, 1 to 10000
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Measuring")]
     warmup: u32,
     /// Frames in one repetition, 1 to 100000
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Measuring")]
     frames: u32,
     /// Repetitions of those frames, 1 to 10000
-    #[arg(long, value_name = "R", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "R", default_value_t = 3,
+        value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Measuring")]
     repeat: u32,
     #[command(flatten)]
     output: StressOutput,
@@ -185,6 +188,7 @@ pub fn run<S: Study>(
         let line = |axis: Axis<S>| format!("{:20}{}\n", axis.name, axis.help);
         return outcome::print(&S::axes().into_iter().map(line).collect::<String>());
     }
+    arguments.check(given)?;
     let (axis, across) = arguments.axes::<S>()?;
     if let Some(axis) = [Some(&axis), across.as_ref()].into_iter().flatten().find(|axis| given.has(axis.parameter)) {
         let name = axis.parameter;
@@ -218,8 +222,8 @@ pub fn run<S: Study>(
             output: &arguments.output,
             child_arguments: child_arguments.iter().cloned().chain(machine.device_arguments()).collect(),
             machine: &machine,
-            json: arguments.json.clone().filter(|_| devices.len() == 1),
-            csv: arguments.csv.clone().filter(|_| devices.len() == 1),
+            json: arguments.json.clone(),
+            csv: arguments.csv.clone(),
             suffix: device.map_or_else(String::new, |device| format!("-{}", slug(device))),
         };
         ascent.publish(left_s / (devices.len() - number) as f64)?;
@@ -236,6 +240,24 @@ impl StressArgs {
     fn schedule(&self, until: Option<Until>) -> Schedule {
         let StressArgs { warmup, frames, repeat, .. } = *self;
         schedule(until, Schedule { warmup, frames, repeat, min_time_s: 0.0 })
+    }
+
+    /// Refuses options that would do nothing beside others.
+    fn check(&self, given: &Given) -> Result<(), Failure> {
+        let files = [("json", "a record", self.json.is_some()), ("csv", "rows", self.csv.is_some())];
+        if let Some((name, what, _)) = files.into_iter().find(|(.., is_set)| *is_set && self.devices.len() > 1) {
+            return Err(Failure::Input(format!(
+                "--{name}: each of several devices has {what} of its own in --out; leave --{name} out"
+            )));
+        }
+        let overridden = ["warmup", "frames", "repeat"].into_iter().find(|name| given.has(name));
+        match (self.limits.until, overridden) {
+            (Some(until @ (Until::Memory | Until::Device)), Some(name)) => Err(Failure::Input(format!(
+                "--{name}: with --until {} each step draws as few frames as it can; leave --{name} out",
+                until.as_str()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// The axis, and in a matrix the second one.

@@ -100,11 +100,9 @@ pub(super) fn promised_triangles(path: &Path) -> Result<Option<u64>, Error> {
 fn reader(path: &Path) -> Result<Read, Error> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let found = FORMATS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
-    found.map(|(_, read)| *read).ok_or_else(|| Error::UnknownEnding {
-        path: path.to_owned(),
-        asset: Asset::Mesh,
-        ending: ending.into_owned(),
-        known: FORMATS.map(|(known, _)| format!(".{known}")).join(", "),
+    found.map(|(_, read)| *read).ok_or_else(|| {
+        let known = FORMATS.map(|(known, _)| format!(".{known}")).join(", ");
+        file::of_unknown_ending(path, Asset::Mesh, &ending, known)
     })
 }
 

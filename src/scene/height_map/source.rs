@@ -86,6 +86,7 @@ impl fmt::Display for HeightMapSource {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::error::Asset;
 
     #[test]
     fn text_round_trips() {
@@ -96,6 +97,18 @@ mod tests {
             assert_eq!(source.to_string(), text);
             assert_eq!(matches!(source, HeightMapSource::File(_)), is_file);
         }
+    }
+
+    #[test]
+    fn a_misspelt_name_is_told_what_there_is() {
+        let names = Asset::HeightMap.built_in().unwrap();
+        for name in names.split(", ") {
+            let Ok(source) = name.parse::<HeightMapSource>();
+            assert!(source.path().is_none(), "{name}");
+        }
+        let Ok(source) = "nope".parse::<HeightMapSource>();
+        let message = source.load().unwrap_err().to_string();
+        assert!(message.contains("height map nope") && message.contains(names), "{message}");
     }
 
     #[test]

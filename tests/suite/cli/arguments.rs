@@ -1,6 +1,6 @@
 //! Numbers outside their range: exit code 2 and the option's name.
 
-use super::program::{ONCE, Program, caustics};
+use super::program::{ONCE, Program, caustics, fumarole, gas, terrain};
 use crate::faults::Layer;
 
 fn bench(options: &str) -> Program {
@@ -98,4 +98,21 @@ fn nonsense_is_a_usage_error() {
         bench(options).run().misused(&[part]);
     }
     caustics("paint").run().misused(&["paint"]);
+}
+
+#[test]
+fn what_was_meant_is_named() {
+    let sweep = caustics("experiment 5-1 --counts 0").on_test_device().run();
+    sweep.refused(2, &["--counts 0", "1 to 4096"]);
+    let lists = gas("render --lists linked,tiles").on_test_device().run();
+    lists.refused(2, &["--lists: several values in turn are for bench"]);
+    fumarole("bench --planes 3").run().refused(2, &["bench: give a paper first", "fumarole PAPER bench", "lava, gas"]);
+    fumarole("collide").run().refused(2, &["collide: give a paper first", "one of terrain"]);
+    fumarole("paint").run().misused(&["paint"]);
+    caustics("render --mesh bunnny")
+        .on_test_device()
+        .run()
+        .refused(2, &["bunnny", "teapot, sphere, box, bunny, plane"]);
+    terrain("render --map nope").on_test_device().run().refused(2, &["nope", "volcano, maunga-whau, jacksboro"]);
+    caustics("render --mesh bunny:0").on_test_device().run().refused(2, &["bunny:0", "1 to 200000000"]);
 }

@@ -291,8 +291,8 @@ fn a_table_without_times_is_written_and_printed() {
 #[test]
 fn bad_input_is_refused_before_anything_is_measured() {
     let long = || sweep().inside(std::env::temp_dir().as_path()).args("--frames 100000 --repeat 10000");
-    long().args("--counts 3,0 --mesh sphere").run().refused(2, &["--planes 0"]);
-    long().args("--counts 3,4097 --mesh sphere").run().refused(2, &["--planes 4097"]);
+    long().args("--counts 3,0 --mesh sphere").run().refused(2, &["--counts 3,0", "1 to 4096"]);
+    long().args("--counts 3,4097 --mesh sphere").run().refused(2, &["--counts 3,4097", "1 to 4096"]);
     long().args("--counts 3 --mesh sphere --mesh no-such.obj").run().refused(2, &["no-such.obj"]);
     long().args("--counts 3 --mesh sphere --out /dev/null/out").run().refused(2, &["/dev/null/out"]);
 }

@@ -69,3 +69,54 @@ fn help_opens_with_a_dozen_options_and_help_all_lists_every_one() {
     }
     assert!(shortened >= 33, "{shortened} of {verbs:?}");
 }
+
+#[test]
+fn help_all_is_taken_everywhere() {
+    for command in ["", "caustics", "compare", "report", "assemble", "devices"] {
+        assert_eq!(help(command, "--help-all"), help(command, "--help"), "{command}");
+        assert_eq!(options(&help(command, "--help")).iter().filter(|option| **option == "--help").count(), 1);
+    }
+}
+
+#[test]
+fn opposites_of_flags_read_as_they_are() {
+    let flags = [("caustics", "--no-mrt"), ("burning", "--no-ground"), ("gas", "--no-geometry-stage")];
+    for (paper, flag) in flags {
+        let text = help(&format!("{paper} render"), "--help-all");
+        let (_, after) = text.split_once(&format!("      {flag}\n")).unwrap();
+        assert!(after.trim_start().starts_with("Switch off: "), "{flag}: {after}");
+    }
+}
+
+/// Of a paper's own numbers, where they are others than a bench's.
+#[test]
+fn defaults_in_help_are_those_that_are_taken() {
+    for (verb, frames, repeat) in [("caustics bench", 10, 3), ("caustics experiment", 3, 3), ("gas experiment", 1, 5)] {
+        let text = help(verb, "--help-all").split_whitespace().collect::<Vec<_>>().join(" ");
+        for (what, number) in
+            [("Frames in one repetition, 1 to 100000", frames), ("Repetitions of those frames, 1 to 10000", repeat)]
+        {
+            assert!(text.contains(&format!("{what} [default: {number}")), "{verb}: {text}");
+        }
+    }
+}
+
+#[test]
+fn options_of_a_steps_frames_are_of_measuring() {
+    let text = help("terrain stress", "--help-all");
+    let (_, measuring) = text.split_once("\nMeasuring:\n").unwrap();
+    let is_heading = |line: &&str| line.ends_with(':') && !line.starts_with(' ');
+    let measuring = measuring.lines().take_while(|line| !is_heading(line)).collect::<Vec<_>>().join("\n");
+    assert_eq!(options(&measuring), ["--warmup", "--frames", "--repeat"]);
+}
+
+#[cfg(feature = "window")]
+#[test]
+fn the_window_names_the_papers_before_one_is_chosen() {
+    for text in [help("view", "--help"), help("view", "--help-all"), help("help", "view")] {
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains("Usage: fumarole view [PAPER] [OPTIONS]"), "{text}");
+        assert!(text.contains("lava, gas, caustics, burning, terrain"), "{text}");
+    }
+    fumarole("view foo").run().refused(2, &["view foo", "lava, gas, caustics, burning, terrain"]);
+}

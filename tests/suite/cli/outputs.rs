@@ -51,7 +51,12 @@ fn outputs_that_are_one_file_or_an_input_are_refused() {
     let picture = Rgba8::new(2, 2, [90, 120, 60, 255].repeat(4)).unwrap();
     write_png(&out.path().join("land.png"), &picture).unwrap();
     let before = fs::read(out.path().join("land.png")).unwrap();
-    for options in ["--json a --csv a", "--csv a.png --trace sub/../a.png --json b", "--image a.png --trace ./a.png"] {
+    for options in [
+        "--json a --csv a",
+        "--csv a.png --trace sub/../a.png --json b",
+        "--image a.png --trace ./a.png",
+        "--json new/a --csv new/er/../a",
+    ] {
         long(out.path()).args(options).run().refused(2, &["two outputs"]);
     }
     let variants = "--variant level-map,volumetric --image a.png --csv a-volumetric.png";
@@ -162,6 +167,20 @@ fn a_failed_run_leaves_older_files_and_no_new_ones() {
     assert_eq!(entries(out.path()), before);
     for name in ["a.json", "a.csv", "a.trace", "a.png"] {
         assert_eq!(fs::read_to_string(out.path().join(name)).unwrap(), "older", "{name}");
+    }
+}
+
+/// Of a run that is refused after its destinations were found to be good.
+#[test]
+fn a_refused_run_makes_no_folders() {
+    let out = folder();
+    for (program, part) in [
+        (caustics("bench --json new/a.json --csv new/er/a.csv --image other/a.png --device no-such"), "no-such"),
+        (caustics("experiment 5-1 --out new --device no-such"), "no-such"),
+        (caustics("render --out new --dump caustics-map=other/a.exr --mesh no-such.obj"), "no-such.obj"),
+    ] {
+        program.inside(out.path()).run().refused(2, &[part]);
+        assert_eq!(entries(out.path()), [""; 0]);
     }
 }
 

@@ -184,4 +184,6 @@ fn a_sweep_in_shards_is_the_experiment() {
     experiment("other").arg("--assembled").arg(part).run().refused(2, &["one part alone"]);
     let whole = caustics("experiment 5-2 --shard 0/2").inside(out.path()).on_test_device().run();
     whole.refused(2, &["--shard", "5-2", "5-1, 5-3"]);
+    let whole = caustics("experiment 5-2 --assembled").arg(&joined).inside(out.path()).on_test_device().run();
+    whole.refused(2, &["--assembled: 5-2", "5-1, 5-3"]);
 }

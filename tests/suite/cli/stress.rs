@@ -418,7 +418,13 @@ fn wrong_inputs_are_refused_before_anything_is_measured() {
     fs::write(out.path().join("other.json"), "{}").unwrap();
     inside(caustics("stress --json other.json")).refused(2, &["other.json", "no record of stress"]);
     assert_eq!(fs::read_to_string(out.path().join("other.json")).unwrap(), "{}");
-    assert_eq!(entries(&out.path().join("fumarole-out")), [""; 0]);
+    for (option, name) in [("json", "a.json"), ("csv", "a.csv")] {
+        let several = caustics("stress --axis planes --devices 0,1").arg(format!("--{option}")).arg(name);
+        several.inside(out.path()).run().refused(2, &[&format!("--{option}"), "several devices", "--out"]);
+    }
+    inside(caustics("stress --until memory --frames 2")).refused(2, &["--frames", "--until memory"]);
+    inside(caustics("stress --until device --warmup 1")).refused(2, &["--warmup", "--until device"]);
+    assert!(!out.path().join("fumarole-out").exists());
     caustics("stress --device nobody --out").arg(out.path()).run().refused(2, &["nobody"]);
     let listed = caustics("stress --list").run().succeeded();
     assert!(listed.stdout.lines().count() == 5 && listed.stdout.starts_with("receiver-triangles"));
