@@ -6,13 +6,19 @@ vec4 find_hit(ivec2 pixel) {
     read_map();
     vec3 direction = direction_of(vec2(pixel));
     vec4 before = texelFetch(prior, min(pixel, textureSize(prior, 0) - 1), 0);
+    // Of a ray that was left before its end no other map knows more.
+    if (before.w == UNFINISHED.surface) {
+        return before;
+    }
     Hit hit = Hit(before.x, before.yz, before.w);
-    float limit_m = hit.depth;
+    int seen = int(before.w) & 7;
     vec2 base = base_depth(direction);
-    if (base.x < hit.depth) {
+    // Where a map lies in the base, the map is seen: land stays before the base, and behind a base that maps before met this one is
+    // followed as far as rounding may have put it.
+    float prior_m = seen == BASE && hit.depth > 0.0 ? NO_DEPTH : hit.depth;
+    float limit_m = min(prior_m, base.x + base.y);
+    if (seen == SKY && base.x < hit.depth) {
         hit = Hit(base.x, base_place(direction, base.x), surface_code(BASE, 0, 0));
-        // Where the map lies in the base, the map is seen.
-        limit_m = min(limit_m, base.x + base.y);
     }
     hit = trace(terrain.eye, direction, limit_m, hit);
     return vec4(hit.depth, hit.place, hit.surface);

@@ -17,7 +17,12 @@ vec3 draped(vec2 fraction) {
 // The terrain's colour under the drape, of its own colour.
 vec3 under_drape(vec3 albedo, vec3 direction, vec4 hit, vec4 facing) {
     int map = (int(hit.w) >> 8) & 15;
-    vec2 fraction = (hit.yz - light.drape_corner) / light.drape_cells;
+    vec2 cells = hit.yz - light.drape_corner;
+    // Across the seam of a map that goes once round, the picture goes on.
+    if (light.drape_turn > 0.0) {
+        cells.x -= light.drape_turn * floor(cells.x / light.drape_turn);
+    }
+    vec2 fraction = cells / light.drape_cells;
     // A picture with a place of its own ends at its border; the other has its corners on the map's.
     bool is_over = light.draping == DRAPED || all(equal(clamp(fraction, vec2(0.0), vec2(1.0)), fraction));
     vec3 color = albedo;

@@ -25,6 +25,7 @@ layout(set = 0, binding = 0, std140) uniform Light {
     float zero_m; // where the maps' heights are 0, above the base
     vec2 base_radii; // off the axis and along it
     int base_kind;
+    float drape_turn; // columns of the first map that fill a whole turn under a picture in a place of its own; 0 where none do
 } light;
 
 vec3 view_direction(vec2 pixel) {

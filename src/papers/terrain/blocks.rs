@@ -5,7 +5,6 @@ use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::drape::Draping;
 use super::ground::{Ground, REPEATED};
-use super::interpolation::OVERSHOOT;
 use super::parameters::{Interpolation, Normals, Parameters};
 use super::placement::Rays;
 use super::pyramid::Shape;
@@ -148,6 +147,8 @@ host_block! {
         pub base_radii: Vec2,
         /// [`PLANE`], [`CYLINDER`] or an ellipsoid.
         pub base_kind: i32,
+        /// Columns of the first map that fill a whole turn under a picture with a place of its own; 0 where none do.
+        pub drape_turn: f32,
     }
 }
 
@@ -174,7 +175,7 @@ impl TerrainBlock {
         };
         let overshoot = match parameters.interpolation {
             Interpolation::Bilinear => 0.0,
-            Interpolation::Bicubic => (ground.highest - ground.lowest) * OVERSHOOT,
+            Interpolation::Bicubic => ground.overshoot,
         };
         // The ground is solid down to the base, so a ray may meet it below its lowest sample.
         let lowest = (ground.lowest - overshoot).min(ground.base);
@@ -293,6 +294,20 @@ impl LightBlock {
             zero_m: -scene.base_level_m as f32,
             base_radii: curve.map_or(Vec2::ZERO, |(_, curve)| curve.radii_m().as_vec2()),
             base_kind: curve.map_or(PLANE, |(_, curve)| if curve.is_cylinder { CYLINDER } else { ELLIPSOID }),
+            drape_turn: match scene.draping {
+                Some(Draping::Placed { .. }) if repeated > 0 => columns as f32,
+                _ => 0.0,
+            },
         }
+    }
+
+    /// The place of a hit on the first map as a fraction of the draped picture's sides.
+    pub fn drape_fraction(&self, place: Vec2) -> Vec2 {
+        let mut cells = place - self.drape_corner;
+        // Across the seam of a map that goes once round, the picture goes on.
+        if self.drape_turn > 0.0 {
+            cells.x -= self.drape_turn * (cells.x / self.drape_turn).floor();
+        }
+        cells / self.drape_cells
     }
 }

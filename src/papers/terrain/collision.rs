@@ -83,7 +83,8 @@ impl Collider {
         again.filter(|again| t > 0.0 && again.surface != Surface::Inside).or(Some(found))
     }
 
-    /// The piece of a segment in the box around maps on a plane; none where it does not come there, or meets the base before.
+    /// The piece of a segment in the box around maps on a plane; none where it does not come there, or begins in the base or meets
+    /// it before.
     fn over_maps(&self, a: DVec3, b: DVec3) -> Option<[f64; 2]> {
         if self.scene.grounds.iter().any(|ground| ground.curve.is_some()) {
             return None;
@@ -100,7 +101,8 @@ impl Collider {
                 return None;
             }
         }
-        (near < far && (near == 0.0 || a.lerp(b, near).y > 0.0)).then_some([near, far])
+        let is_before = near == 0.0 || (a.y > 0.0 && a.lerp(b, near).y > 0.0);
+        (near < far && is_before).then_some([near, far])
     }
 
     /// The first contact of a piece of a segment.
@@ -120,7 +122,8 @@ impl Collider {
                 (hit, normal) = found;
             }
         }
-        let t = f64::from(hit.depth_m);
+        // Land in the base counts a hair farther than the base, which may be the segment's end.
+        let t = f64::from(hit.depth_m).min(1.0);
         (hit.surface != Surface::Sky).then(|| Contact {
             t: Some(t),
             distance_m: t * a.distance(b),

@@ -10,7 +10,7 @@ use super::drape::{Drape, Draping};
 use crate::image::read_png;
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, parse_finite};
-use crate::scene::{HeightMap, world_file};
+use crate::scene::{Coordinates, HeightMap, world_file};
 
 /// Source of a drape.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,17 +73,41 @@ impl Value for DrapeSource {
     }
 }
 
+/// A drape whose picture is read, before there are maps to lay it over.
+pub(super) struct ReadDrape<'a> {
+    source: &'a DrapeSource,
+    picture: Option<Picture<'a>>,
+}
+
+struct Picture<'a> {
+    path: &'a Path,
+    drape: Drape,
+    /// The file beside it that says where it lies.
+    place: Option<(PathBuf, Coordinates)>,
+}
+
 impl DrapeSource {
+    /// Reads the picture, if it is one: maps take long to make, and a file that is none is refused before.
+    ///
+    /// # Errors
+    /// [`Error::Image`] of the picture, [`Error::Scene`] of the file beside it.
+    pub(super) fn read(&self) -> Result<ReadDrape<'_>, Error> {
+        let picture = if let DrapeSource::Picture(path) = self { Some(Picture::read(path)?) } else { None };
+        Ok(ReadDrape { source: self, picture })
+    }
+}
+
+impl ReadDrape<'_> {
     /// Over maps whose heights are `exaggeration` times the true ones, which lines and colours count.
     ///
     /// # Errors
-    /// [`Error::Image`] and [`Error::Input`] of a picture.
-    pub(super) fn load(&self, maps: &[HeightMap], exaggeration: f32) -> Result<Drape, Error> {
-        let draping = match self {
-            DrapeSource::Picture(path) => {
-                return match maps.first() {
-                    Some(map) => load_picture(path, map),
-                    None => Ok(Drape::white()),
+    /// [`Error::Input`] of a picture that does not lie on the first map.
+    pub(super) fn over(self, maps: &[HeightMap], exaggeration: f32) -> Result<Drape, Error> {
+        let draping = match self.source {
+            DrapeSource::Picture(_) => {
+                return match (self.picture, maps.first()) {
+                    (Some(picture), Some(map)) => picture.over(map),
+                    _ => Ok(Drape::white()),
                 };
             }
             DrapeSource::Contours(Some(interval_m)) => Draping::Contours { interval_m: interval_m * exaggeration },
@@ -113,42 +137,49 @@ fn suiting_interval_m(range_m: f64) -> f32 {
     ([1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0) * power_m) as f32
 }
 
-/// The picture, where its world file says or with its corners on the map's.
-fn load_picture(path: &Path, map: &HeightMap) -> Result<Drape, Error> {
-    let picture = read_png(path)?;
-    let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
-    let Some((world_file, coordinates)) = world_file::beside(path)? else { return Ok(drape) };
-    let Some(of_map) = map.coordinates() else {
-        let message = format!(
-            "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
-             picture's corners on the map's",
-            world_file.display(),
-            path.display()
-        );
-        return Err(Error::Input(message));
-    };
-    let (corners, map_corners) =
-        (coordinates.corners(picture.width(), picture.height()), of_map.corners(map.width(), map.height()));
-    // The same meridian may have two names.
-    let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
-    let turns = if map.geographic().is_some() { (apart_deg / 360.0).round() } else { 0.0 };
-    let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
-    let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
-    if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
-        let shown = |number: f64| (number * 1e6).round() / 1e6;
-        let span = |[a, b]: [DVec2; 2]| {
-            format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
-        };
-        let message = format!(
-            "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
-            world_file.display(),
-            path.display(),
-            span(corners),
-            span(map_corners)
-        );
-        return Err(Error::Input(message));
+impl<'a> Picture<'a> {
+    fn read(path: &'a Path) -> Result<Self, Error> {
+        let picture = read_png(path)?;
+        let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
+        Ok(Picture { path, drape, place: world_file::beside(path)? })
     }
-    Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
+
+    /// The picture where its world file says, or with its corners on the map's.
+    fn over(self, map: &HeightMap) -> Result<Drape, Error> {
+        let Picture { path, drape, place } = self;
+        let (width, height) = drape.size();
+        let Some((world_file, coordinates)) = place else { return Ok(drape) };
+        let Some(of_map) = map.coordinates() else {
+            let message = format!(
+                "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
+                 picture's corners on the map's",
+                world_file.display(),
+                path.display()
+            );
+            return Err(Error::Input(message));
+        };
+        let (corners, map_corners) = (coordinates.corners(width, height), of_map.corners(map.width(), map.height()));
+        // The same meridian may have two names.
+        let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
+        let turns = if map.geographic().is_some() { (apart_deg / 360.0).round() } else { 0.0 };
+        let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
+        let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
+        if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
+            let shown = |number: f64| (number * 1e6).round() / 1e6;
+            let span = |[a, b]: [DVec2; 2]| {
+                format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
+            };
+            let message = format!(
+                "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
+                world_file.display(),
+                path.display(),
+                span(corners),
+                span(map_corners)
+            );
+            return Err(Error::Input(message));
+        }
+        Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
+    }
 }
 
 #[cfg(test)]

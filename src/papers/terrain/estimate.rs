@@ -9,6 +9,7 @@ use super::quadtree::PATCH_SIDE;
 use super::scene::Inputs;
 use super::selection::Patch;
 use super::start::TILE_PIXELS;
+use super::tiles::pool_side;
 use crate::gpu::Device;
 use crate::measure::estimate::Estimate;
 use crate::scene::Samples;
@@ -48,7 +49,8 @@ impl Parameters {
             if variant == Variant::TiledCompute {
                 let tile = f64::from(TILE * TILE) * sample;
                 let most = self.tile_bytes() as f64 / inputs.maps.len() as f64 / tile;
-                let (columns, rows) = PageTable::new(shape, self.interpolation, most as usize).pool();
+                let table = PageTable::new(shape, self.interpolation, most as usize, pool_side(device));
+                let (columns, rows) = table.pool();
                 // Of the pool, and the one that is on its way to it.
                 pools += (f64::from(columns) * f64::from(rows) + 1.0) * tile;
             } else {

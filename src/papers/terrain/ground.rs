@@ -62,6 +62,8 @@ pub struct Ground {
     pub highest: f64,
     /// The base's h.
     pub base: f64,
+    /// The most by which Catmull-Rom surfaces pass the lowest and the highest h: next to holes those of their nodes count as well.
+    pub overshoot: f64,
     /// Height of a pixel's footprint on the terrain over its width, at least 1: a footprint as wide as a pixel is then higher
     /// than one.
     pub steepness: f64,
@@ -106,13 +108,13 @@ impl Ground {
             lowest: value(low_m.into()),
             highest: value(high_m.into()),
             base: value(base_level_m),
+            overshoot: (value(high_m.into()) - value(map.lowest_node_m().into())) * OVERSHOOT,
             steepness: steepness(map),
             curve: None,
             closes: false,
         };
         let highest_m = (ground.highest - ground.base) * unit_m;
-        let overshoot_m = (ground.highest - ground.lowest) * unit_m * OVERSHOOT;
-        let reach_m = (highest_m + overshoot_m).max(0.0);
+        let reach_m = (highest_m + ground.overshoot * unit_m).max(0.0);
         match base {
             Base::Plane => {
                 let center = DVec3::new(placement.center_m.x, 0.0, placement.center_m.y);

@@ -120,7 +120,7 @@ pub fn color_of(
         let draped = drape.filter(|_| hit.surface == Surface::Terrain).and_then(|drape| match drape.draping() {
             Draping::WholeMap | Draping::Placed { .. } if hit.map > 0 => None,
             Draping::WholeMap | Draping::Placed { .. } => {
-                drape.color((Vec2::from_array(hit.place) - light.drape_corner) / light.drape_cells)
+                drape.color(light.drape_fraction(Vec2::from_array(hit.place)))
             }
             draping => Some(tinted(light, draping, albedo, (direction, hit.depth_m), facing)),
         });

@@ -63,6 +63,7 @@ mod tile_file;
 mod tile_writer;
 mod tiles;
 mod tints;
+mod unfinished;
 mod view;
 mod voids;
 mod walk;
@@ -102,7 +103,6 @@ pub use self::tile_file::TileFile;
 pub use self::tiles::TileCounts;
 use self::tiles::Tiles;
 pub use self::voids::void_warnings;
-use crate::gpu::transfer::read_image;
 use crate::gpu::{Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
@@ -414,35 +414,7 @@ impl Paper for Terrain {
         if !self.exchange_tiles(shaders)? {
             return Ok(false);
         }
-        let device = shaders.device();
-        let unfinished = |target: &Arc<ImageView>, is_one: &dyn Fn(&[f32]) -> bool, values: usize| {
-            let texels = bytemuck::pod_collect_to_vec::<u8, f32>(&read_image(device, target)?);
-            Ok::<_, Error>(texels.chunks_exact(values).filter(|texel| is_one(texel)).count())
-        };
-        let (is_hit, is_light) = (
-            |texel: &[f32]| texel.first_chunk().is_some_and(|&texel| Hit::from_texel(texel).is_unfinished()),
-            |texel: &[f32]| texel[0] > 1.0,
-        );
-        let mut counts = Vec::new();
-        if let Technique::RayCast(_, depth, shading) = &self.technique {
-            counts.push(("depth", unfinished(depth.target(), &is_hit, 4)?));
-            if let Some(shadow) = &shading.shadow {
-                counts.push(("shadow", unfinished(&shadow.target, &is_light, 1)?));
-            }
-            if let Some(occlusion) = &shading.occlusion {
-                counts.push(("occlusion", unfinished(&occlusion.target, &is_light, 1)?));
-            }
-        }
-        if let Some(shadows) = self.objects.as_ref().and_then(|objects| objects.shadow.as_ref()) {
-            counts.push(("object-shadow", unfinished(&shadows.shadow.target, &is_light, 1)?));
-            counts.push(("object-occlusion", unfinished(&shadows.occlusion.target, &is_light, 1)?));
-        }
-        let Some((pass, rays)) = counts.into_iter().find(|(_, rays)| *rays > 0) else { return Ok(true) };
-        let problem = format!(
-            "{rays} rays did not end: this driver leaves a shader's loops early, as after 65,535 iterations together; take a \
-             smaller map or `object`, `interpolation` bilinear, `lod` pixel or variant cpu"
-        );
-        Err(Error::Pass { pass: pass.into(), problem })
+        self.check_rays(shaders.device()).map(|()| true)
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
@@ -451,13 +423,8 @@ impl Paper for Terrain {
 
     fn warnings(&self) -> Vec<String> {
         let haze = self.parameters.haze_warning(&self.scene.extent);
-        let lacking = self.tiles().filter(|counts| counts.missing > 0).map(|counts| {
-            format!(
-                "{} tiles of those that the rays asked for lack room and are drawn from the level above them: raise \
-                 `tile-memory`",
-                counts.missing
-            )
-        });
+        let memory_mib = self.parameters.tile_memory_mib;
+        let lacking = self.tiles().into_iter().flat_map(|counts| counts.warnings(memory_mib));
         let count = self.scene.grounds.len();
         let winding =
             (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));

@@ -69,6 +69,8 @@ pub struct PageTable {
     asked_in: Vec<u64>,
     exchanges: u64,
     missing: usize,
+    /// True where an image of the device has no room for tiles that the memory has room for.
+    is_cut: bool,
 }
 
 /// Places that any pool has beside those of the tiles that are always held.
@@ -80,8 +82,9 @@ fn always(grids: &[Grid]) -> usize {
 }
 
 impl PageTable {
-    /// Of a pool with room for `most` tiles, for as many as there are, or for those that are always held and a few more.
-    pub fn new(shape: Shape, interpolation: Interpolation, most: usize) -> Self {
+    /// Of a pool with room for `most` tiles, for as many as there are, or for those that are always held and a few more; it has at most
+    /// `side` of them a side, which has room for the latter.
+    pub fn new(shape: Shape, interpolation: Interpolation, most: usize, side: u32) -> Self {
         let mut grids: Vec<Grid> = Vec::new();
         for shift in (0..=shape.top).rev() {
             let (width, height) = shape.level(shift);
@@ -98,9 +101,15 @@ impl PageTable {
         }
         let count = grids.last().map_or(0, |last| last.first + last.count());
         let most = most.max(always(&grids) + FEW);
-        let column_bits = most.min(count).max(1).ilog2() / 2;
-        let rows = count.div_ceil(1 << column_bits).min(most >> column_bits);
-        let places = rows << column_bits;
+        let rows_in = |column_bits: u32| count.div_ceil(1 << column_bits).min(most >> column_bits);
+        let (side, mut column_bits) = (side.max(1), most.min(count).max(1).ilog2() / 2);
+        column_bits = column_bits.min(side.ilog2());
+        // Wider, where it would be longer than an image.
+        while rows_in(column_bits) > side as usize && column_bits < side.ilog2() {
+            column_bits += 1;
+        }
+        let is_cut = rows_in(column_bits) > side as usize;
+        let places = rows_in(column_bits).min(side as usize) << column_bits;
         PageTable {
             grids,
             shape,
@@ -110,7 +119,13 @@ impl PageTable {
             asked_in: vec![0; places],
             exchanges: 0,
             missing: 0,
+            is_cut,
         }
+    }
+
+    /// True where an image of the device has no room for tiles that the memory has room for.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Sizes of the levels.
@@ -254,6 +269,8 @@ mod tests {
     use crate::scene::random::Random;
 
     const SHAPE: Shape = Shape { width: 700, height: 391, top: 10 };
+    /// Tiles along the images of many devices.
+    const SIDE: u32 = 128;
 
     /// The page of a texel, as the shader finds it: the place that answers, and the levels up to it.
     fn answer(table: &PageTable, pages: &[u32], (bound, shift): (Bound, u32), (x, y): (u32, u32)) -> (usize, u32) {
@@ -272,7 +289,7 @@ mod tests {
         let mut random = Random::new(11);
         let data: Vec<u16> = (0..SHAPE.width * SHAPE.height).map(|_| (random.unit() * 60_000.0) as u16).collect();
         let pyramids = [Bound::Highest, Bound::Lowest].map(|bound| Pyramid::build(SHAPE, &data, bound));
-        let mut table = PageTable::new(SHAPE, Interpolation::Bicubic, 40);
+        let mut table = PageTable::new(SHAPE, Interpolation::Bicubic, 40, SIDE);
         assert!(table.count() > 50 && table.held_always() == 16, "{} {}", table.count(), table.held_always());
         let mut was_up = 0;
         for round in 0..12 {
@@ -315,7 +332,7 @@ mod tests {
 
     #[test]
     fn the_coarsest_come_first_and_the_longest_unasked_make_room() {
-        let mut table = PageTable::new(SHAPE, Interpolation::Bilinear, 20);
+        let mut table = PageTable::new(SHAPE, Interpolation::Bilinear, 20, SIDE);
         let (always, places) = (table.held_always(), table.tiles.len());
         assert_eq!((always, places, table.pool()), (8, 20, (4, 5)));
         assert_eq!(table.exchange([]).len(), always);
@@ -340,7 +357,7 @@ mod tests {
     #[test]
     fn numbers_and_tiles_are_each_others_inverse() {
         for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
-            let table = PageTable::new(SHAPE, interpolation, 1);
+            let table = PageTable::new(SHAPE, interpolation, 1, SIDE);
             for number in 0..table.count() {
                 let Tile { bound, shift, origin: (x, y) } = table.tile(number);
                 assert_eq!(table.number(bound, shift, (x / TILE, y / TILE)), Some(number));
@@ -353,8 +370,27 @@ mod tests {
     #[test]
     fn a_pool_is_no_larger_than_the_map_and_its_room() {
         for (most, expected) in [(1, (2, 6)), (14, (2, 7)), (20, (4, 5)), (1 << 20, (4, 10))] {
-            let table = PageTable::new(SHAPE, Interpolation::Bilinear, most);
+            let table = PageTable::new(SHAPE, Interpolation::Bilinear, most, SIDE);
             assert_eq!(table.pool(), expected, "{most} of {}", table.count());
+        }
+    }
+
+    /// No pool is longer than an image, however much the memory has room for, and one that has fewer tiles for that says so.
+    #[test]
+    fn a_pool_is_an_image_of_the_device() {
+        let shape = Shape { width: 16_000, height: 9_000, top: 14 };
+        for side in [32, 61, 64, 128] {
+            for (most, interpolation) in (4..16)
+                .flat_map(|bits| [(1 << bits, Interpolation::Bilinear), ((2 << bits) - 1, Interpolation::Bicubic)])
+            {
+                let table = PageTable::new(shape, interpolation, most, side);
+                let ((columns, rows), wanted) = (table.pool(), most.min(table.count()));
+                let name = format!("{most} of {} in {side}: {columns} x {rows}", table.count());
+                assert!(columns <= side && rows <= side && columns * rows >= (wanted as u32).min(20), "{name}");
+                let is_short = ((columns * rows) as usize) < wanted - wanted / 4;
+                assert!(table.is_cut() || !is_short, "{name}");
+                assert!(!table.is_cut() || rows == side && 2 * columns > side, "{name}");
+            }
         }
     }
 }

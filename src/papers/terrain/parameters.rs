@@ -208,12 +208,19 @@ pub enum View {
     Camera(Camera),
 }
 
+/// The near plane of what is rasterised for a camera that a user sets, a thousandth of the target's distance at most: rays see what
+/// is nearer, too. Depth buffers know depths as well however near it is, and large triangles that begin there less well.
+const NEAR_M: f32 = 0.01;
+/// The nearest that it may be: depths of 100,000 km are numbers there.
+const NEAREST_M: f32 = 1e-9;
+
 impl Value for View {
     const SHAPE: Shape = Shape { placeholder: "side|top|EYE,TARGET", ..EyeAndTarget::SHAPE };
 
     fn parse(texts: &[&OsStr]) -> Result<Self, String> {
         let camera = |EyeAndTarget { eye, target }| {
-            View::Camera(Camera { eye, target, up: Vec3::Y, vertical_fov_rad: FRAC_PI_4, near_m: 1.0, far_m: 1.0e6 })
+            let near_m = (1e-3 * eye.distance(target)).clamp(NEAREST_M, NEAR_M);
+            View::Camera(Camera { eye, target, up: Vec3::Y, vertical_fov_rad: FRAC_PI_4, near_m, far_m: 1.0e6 })
         };
         match one(texts)? {
             "side" => Ok(View::Side),
@@ -432,5 +439,23 @@ impl Parameters {
     /// Width over height of the picture.
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A centimetre before the eye the picture begins, and near a target nearer.
+    #[test]
+    fn near_things_are_before_a_user_s_camera() {
+        for (text, most_m) in
+            [("0,50,0,0,50,-9000", 0.01), ("0,1,0,0,1,-1", 1e-3), ("0,0,0,0,0,1e-4", 1e-7), ("0,0,0,0,0,1e-8", 1e-9)]
+        {
+            let Ok(View::Camera(camera)) = View::parse(&[OsStr::new(text)]) else { panic!("{text}") };
+            let parameters = Parameters { view: View::Camera(camera), ..Parameters::default() };
+            assert_eq!(parameters.validate(), Ok(()), "{text}");
+            assert!(camera.near_m > 0.0 && camera.near_m <= most_m * 1.001, "{text}: {} m", camera.near_m);
+        }
     }
 }

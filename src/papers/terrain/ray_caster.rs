@@ -95,16 +95,17 @@ impl<T: Texel> RayCaster<'_, T> {
         corner_direction + x as f32 * right_step + y as f32 * down_step
     }
 
-    /// The hit of a ray: the base or the map, the nearer one, if before `prior`.
+    /// The hit of a ray: the base or the map, the nearer one, if before `prior`, which is of the maps before. Land that lies in the
+    /// base is before it, by rounding up to a hair farther.
     pub fn find(&self, direction: Vec3, prior: Hit) -> Hit {
-        let (mut hit, mut limit_m) = (prior, prior.depth_m);
         let (base_m, slack_m, place) = base_of(self.terrain, direction);
-        if base_m < hit.depth_m {
-            hit = self.hit(base_m, place, Surface::Base, 0, 0);
-            // Where the map lies in the base, the map is seen.
-            limit_m = limit_m.min(base_m + slack_m);
-        }
-        self.trace(self.terrain.eye, direction, limit_m).unwrap_or(hit)
+        let is_over_base = prior.surface == Surface::Base && prior.depth_m > 0.0;
+        let prior_m = if is_over_base { NO_DEPTH } else { prior.depth_m };
+        let hit = match prior.surface {
+            Surface::Sky if base_m < prior.depth_m => self.hit(base_m, place, Surface::Base, 0, 0),
+            _ => prior,
+        };
+        self.trace(self.terrain.eye, direction, prior_m.min(base_m + slack_m)).unwrap_or(hit)
     }
 
     /// True where the map stands between a pixel's hit and the sun.

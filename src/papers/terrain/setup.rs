@@ -87,7 +87,7 @@ impl Default for Setup {
 }
 
 fn tile_results(counts: TileCounts) -> Json {
-    let TileCounts { tiles, held, missing, loaded, exchanges, loading_ms } = counts;
+    let TileCounts { tiles, held, missing, loaded, exchanges, loading_ms, is_cut: _ } = counts;
     json!({
         "tiles": tiles, "held": held, "missing": missing, "loaded": loaded, "exchanges": exchanges, "loading_ms": loading_ms,
     })
@@ -211,8 +211,9 @@ impl Study for Setup {
     /// Checks the parameters and loads the maps, the objects and the drape.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
+        let drape = self.drape.as_ref().map(DrapeSource::read).transpose()?;
         if self.streams {
-            return streaming::load(self);
+            return streaming::load(self, drape);
         }
         let mut maps = self.maps.iter().map(|source| self.load_map(source)).collect::<Result<Vec<_>, _>>()?;
         if self.voids == Voids::Hole {
@@ -221,7 +222,7 @@ impl Study for Setup {
             maps = maps.into_iter().map(|map| map.with_voids(Voids::Hole, base_m)).collect::<Result<_, _>>()?;
         }
         let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
-        let drape = self.drape.as_ref().map(|source| source.load(&maps, self.exaggeration)).transpose()?;
+        let drape = drape.map(|drape| drape.over(&maps, self.exaggeration)).transpose()?;
         let maps = maps.into_iter().zip(self.placements()).map(input).collect();
         let mut scene = Scene { maps, objects: Vec::new(), drape, tiles: Vec::new() };
         scene.objects = self.stand(&scene.maps)?;

@@ -6,20 +6,21 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::MapInput;
+use super::drape_source::ReadDrape;
 use super::setup::{Scene, Setup};
 use super::tile_file::TileFile;
-use super::{DrapeSource, MapInput};
 use crate::content;
 use crate::measure::Error;
 use crate::measure::parameter::Value;
 use crate::scene::loading::Conditions;
 use crate::scene::{HeightMap, HeightMapSource, RowSource, SourceState, Voids, source_sha256};
 
-/// Loads all but the samples of the maps.
+/// Loads all but the samples of the maps, to lie under `drape`.
 ///
 /// # Errors
-/// [`Error::Input`] for what needs them; as [`TileFile::open`], and of the drape and the objects.
-pub fn load(setup: &Setup) -> Result<Scene, Error> {
+/// [`Error::Input`] for what needs them; as [`TileFile::open`], and of the drape's place and the objects.
+pub fn load(setup: &Setup, drape: Option<ReadDrape<'_>>) -> Result<Scene, Error> {
     if setup.objects.iter().any(|object| object.place.is_some()) {
         let reason =
             "an `object` with a place stands on the ground, which is not held; leave the place or `stream` out";
@@ -31,8 +32,7 @@ pub fn load(setup: &Setup) -> Result<Scene, Error> {
     }
     let tiles = setup.maps.iter().map(|source| open(setup, source).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
     let bare: Vec<HeightMap> = tiles.iter().map(|tiles| HeightMap::clone(tiles.map())).collect();
-    let load_drape = |source: &DrapeSource| source.load(&bare, setup.exaggeration);
-    let drape = setup.drape.as_ref().map(load_drape).transpose()?;
+    let drape = drape.map(|drape| drape.over(&bare, setup.exaggeration)).transpose()?;
     let objects = setup.objects.iter().map(|object| object.load(setup.crease_deg)).collect::<Result<_, _>>()?;
     let input = |(tiles, placement): (&Arc<TileFile>, _)| MapInput { map: tiles.map().clone(), placement };
     let maps = tiles.iter().zip(setup.placements()).map(input).collect();
@@ -52,14 +52,17 @@ fn open(setup: &Setup, source: &HeightMapSource) -> Result<TileFile, Error> {
     TileFile::open(folder.as_deref(), &name, interpolation, key, state, || rows(setup, source))
 }
 
-/// All that the tiles of a map are made of.
+/// All that the tiles of a map are made of, and that says where it lies.
 fn key(setup: &Setup, source: &HeightMapSource) -> Result<String, Error> {
     let Setup { parameters, voids, resolution, spacing_m, exaggeration, seed, overview, .. } = setup;
     let contents = match source.path() {
         None => format!("{source} {resolution} {seed}"),
         Some(path) => {
             let contents = source_sha256(path).map_err(|error| unreadable(path, error))?;
-            format!("{contents} {overview}")
+            // Of an SRTM tile the name says where it lies.
+            let is_named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("hgt"));
+            let place = path.file_name().filter(|_| is_named).unwrap_or_default();
+            format!("{contents} {overview} {}", place.display())
         }
     };
     let level_m = if *voids == Voids::Hole { parameters.base_level_m } else { None };
@@ -90,4 +93,23 @@ fn rows(setup: &Setup, source: &HeightMapSource) -> Result<RowSource, Error> {
         map = map.with_voids(Voids::Hole, base_m)?;
     }
     Ok(RowSource::of(map)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tile of one degree says by its name alone where it lies; of other files the contents count.
+    #[test]
+    fn tiles_under_other_names_are_other_maps() {
+        let folder = tempfile::tempdir().unwrap();
+        let key_of = |name: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, "the same").unwrap();
+            key(&Setup::default(), &HeightMapSource::File(path)).unwrap()
+        };
+        assert_ne!(key_of("N37E140.hgt"), key_of("N37E141.hgt"));
+        assert_ne!(key_of("S01W079.HGT"), key_of("S02W079.HGT"));
+        assert_eq!(key_of("one.asc"), key_of("other.asc"));
+    }
 }

@@ -25,7 +25,7 @@ use crate::scene::{HeightMap, RowSource, Samples, SourceState, cache};
 const MOST_BYTES: u64 = 64 << 30;
 const ENDING: &str = "tiles";
 /// The layout of a file, and the levels in it: one more wherever either changes.
-const MAGIC: [u8; 16] = *b"fumarole tiles 1";
+const MAGIC: [u8; 16] = *b"fumarole tiles 2";
 /// Bytes before the checksums: the start, and what the map says of itself.
 const HEAD_BYTES: u64 = 4096;
 
@@ -62,7 +62,7 @@ pub fn tile_bytes(map: &HeightMap) -> usize {
 
 /// The numbers of a map's tiles.
 fn numbers(map: &HeightMap, interpolation: Interpolation) -> PageTable {
-    PageTable::new(Shape::new(map.width(), map.height()), interpolation, 0)
+    PageTable::new(Shape::new(map.width(), map.height()), interpolation, 0, u32::MAX)
 }
 
 impl TileFile {

@@ -34,6 +34,8 @@ pub struct TileCounts {
     pub exchanges: u32,
     /// Milliseconds of looking for what is asked for and of copying it.
     pub loading_ms: f64,
+    /// The pool is as large as an image of the device, and smaller than its memory.
+    pub is_cut: bool,
 }
 
 impl TileCounts {
@@ -46,8 +48,32 @@ impl TileCounts {
             loaded: self.loaded + other.loaded,
             exchanges: self.exchanges.max(other.exchanges),
             loading_ms: self.loading_ms + other.loading_ms,
+            is_cut: self.is_cut || other.is_cut,
         }
     }
+
+    /// A line on each thing that keeps tiles out of a pool of so much memory.
+    pub(super) fn warnings(&self, tile_memory_mib: u32) -> impl Iterator<Item = String> + use<> {
+        let TileCounts { missing, is_cut, .. } = *self;
+        let cut = is_cut.then(|| {
+            format!(
+                "`tile-memory` {tile_memory_mib}: the tiles of a map lie in one image, and an image of this device holds fewer of \
+                 them; take less memory"
+            )
+        });
+        let way_out = if is_cut { "an image of this device holds no more" } else { "raise `tile-memory`" };
+        let lacking = (missing > 0).then(|| {
+            format!(
+                "{missing} tiles of those that the rays asked for lack room and are drawn from the level above them: {way_out}"
+            )
+        });
+        lacking.into_iter().chain(cut)
+    }
+}
+
+/// The most tiles along a pool: it lies in one image.
+pub fn pool_side(device: &Device) -> u32 {
+    device.physical().limits.max_image_dimension2_d / TILE
 }
 
 /// All tiles of a map's levels.
@@ -74,11 +100,11 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// Makes a pool of at most `bytes`, or one for the coarsest levels and little more; without a file builds the levels on the
-    /// processor.
+    /// Makes a pool of at most `bytes` and no larger than the device's images, or one for the coarsest levels and little more; without
+    /// a file builds the levels on the processor.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a pool that is larger than the device's images; errors of the Vulkan layer.
+    /// Errors of the Vulkan layer.
     pub fn new(
         device: &Arc<Device>,
         label: &str,
@@ -92,7 +118,7 @@ impl Tiles {
         };
         let tile_bytes = tile_bytes(map) as u64;
         let shape = Shape::new(map.width(), map.height());
-        let table = PageTable::new(shape, interpolation, (bytes / tile_bytes) as usize);
+        let table = PageTable::new(shape, interpolation, (bytes / tile_bytes) as usize, pool_side(device));
         let (columns, rows) = table.pool();
         let desc = ImageDesc::new_2d(format!("{label}/tiles"), format, columns * TILE, rows * TILE);
         let view = Image::new(device, desc.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
@@ -180,6 +206,7 @@ impl Tiles {
             loaded: self.loaded,
             exchanges: self.exchanges,
             loading_ms: self.loading_ms,
+            is_cut: self.table.is_cut(),
         }
     }
 }

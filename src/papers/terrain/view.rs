@@ -14,6 +14,9 @@ const OPTICAL_DEPTH: f64 = 0.24;
 const FAINT: f64 = 0.05;
 /// The relief, as a fraction of the longest side, up to which maps count as low.
 const LOW: f64 = 0.25;
+/// The most steps back, each a tenth of the way, that a camera takes to hold all that it has to: enough for the highest and narrowest
+/// map in the narrowest picture.
+const MOST_STEPS_BACK: i32 = 480;
 
 impl Parameters {
     /// The camera of [`Parameters::view`] for maps of this extent.
@@ -69,9 +72,9 @@ impl Parameters {
                 seen.x.abs() <= depth_m * self.aspect() && seen.dot(upward).abs() <= depth_m
             })
         };
-        // Farther back than that, a thousand times, the picture is a point.
-        let factor = (0..80).map(|step| 1.1_f64.powi(step)).find(|factor| is_seen(target + back * *factor));
-        let eye = target + back * factor.unwrap_or(1e3);
+        let factors = (0..=MOST_STEPS_BACK).map(|step| 1.1_f64.powi(step));
+        let mut eyes = factors.map(|factor| target + back * factor);
+        let eye = eyes.find(|eye| is_seen(*eye)).unwrap_or(target + back * 1.1_f64.powi(MOST_STEPS_BACK));
         (eye, target)
     }
 
@@ -127,6 +130,7 @@ mod tests {
             (300.0, 5.0, 20.0),
             (20.0, 5.0, 300.0),
             (60.0, 900.0, 60.0),
+            (60.0, 4e5, 60.0),
             (1e7, 9e3, 5e6),
             (100.0, 0.0, 100.0),
         ] {

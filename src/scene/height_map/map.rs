@@ -20,6 +20,8 @@ pub struct HeightMap {
     geographic: Option<Geographic>,
     coordinates: Option<Coordinates>,
     voids: Option<VoidSamples>,
+    /// The height of the nodes in its holes, metres, if it has any.
+    hole_m: Option<f32>,
     suspect: Option<Suspect>,
     /// Of a map whose samples lie elsewhere.
     slope: Option<f64>,
@@ -74,6 +76,7 @@ impl HeightMap {
             geographic: None,
             coordinates: None,
             voids: None,
+            hole_m: None,
             suspect: None,
             slope: None,
         })
@@ -108,15 +111,17 @@ impl HeightMap {
     /// The height of one sample, metres. Columns and rows beyond the border take the border's.
     pub fn height_m(&self, column: u32, row: u32) -> f32 {
         let index = row.min(self.height - 1) as usize * self.width as usize + column.min(self.width - 1) as usize;
-        match &self.samples {
-            Samples::Steps { values, origin_m, step_m } => origin_m + step_m * f32::from(values[index]),
-            Samples::Float(heights) => heights[index],
-        }
+        self.samples.height_m(index)
     }
 
-    /// Lowest and highest sample, metres.
+    /// Lowest and highest sample, metres; a hole is none.
     pub fn range_m(&self) -> (f32, f32) {
         self.range_m
+    }
+
+    /// The lowest node that interpolation reads, metres: a sample, or one in a hole.
+    pub fn lowest_node_m(&self) -> f32 {
+        self.hole_m.map_or(self.range_m.0, |hole_m| hole_m.min(self.range_m.0))
     }
 
     /// Root of the mean square of the land's slope, metres for a metre; of at most 512 columns and rows.
@@ -192,7 +197,9 @@ impl HeightMap {
             Voids::Hole => self.range_m,
             _ => samples.range_m().map_err(|_| unusable("the level of its voids is out of range"))?,
         };
-        Ok(Self { samples, range_m, voids: Some(voids), ..self })
+        let hole = voids.places().next().filter(|_| treatment == Voids::Hole);
+        let hole_m = hole.map(|place| samples.height_m(place));
+        Ok(Self { samples, range_m, voids: Some(voids), hole_m, ..self })
     }
 
     /// A line on the samples that the source left void; none where it has them all.
@@ -234,7 +241,8 @@ impl HeightMap {
         let range_m = samples
             .range_m()
             .map_err(|_| unusable(format!("an exaggeration of {factor} takes its heights out of range")))?;
-        Ok(Self { samples, range_m, ..self })
+        let hole_m = self.hole_m.map(|hole_m| hole_m * factor);
+        Ok(Self { samples, range_m, hole_m, ..self })
     }
 
     /// The map of a whole turn, whose first column follows its last: two columns more on each side, which repeat those
@@ -287,6 +295,14 @@ impl Samples {
 
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The height of one sample, metres.
+    fn height_m(&self, index: usize) -> f32 {
+        match self {
+            Self::Steps { values, origin_m, step_m } => origin_m + step_m * f32::from(values[index]),
+            Self::Float(heights) => heights[index],
+        }
     }
 
     /// The same kind without a sample.

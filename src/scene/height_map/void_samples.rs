@@ -199,6 +199,7 @@ mod tests {
                 assert_eq!([found[0], found[2], found[3], found[4]], [100.0, 110.0, 115.0, 120.0], "{base_m}");
                 assert!(found[1] < base_m && found[1] > base_m - 2.0 && found[5] == found[1], "{base_m}: {found:?}");
                 assert_eq!(hole.range_m(), (100.0, 120.0), "a hole is no height");
+                assert_eq!(hole.lowest_node_m(), found[1].min(100.0), "{base_m}");
             }
         }
         assert!(matches!(steps().with_voids(Voids::Level(80.0), 0.0).unwrap().samples(), Samples::Steps { .. }));

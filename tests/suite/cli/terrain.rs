@@ -205,9 +205,12 @@ fn bodies_that_are_none_are_refused() {
     ] {
         terrain("collide --resolution 16").args(body).run().refused(2, parts);
     }
-    for body in ["--segment=nan,2,3,1,2,4", "--segment=1,2,3", "--sphere=1,2,3,inf", "--sphere=a,b,c,d", "--camera=top"]
-    {
-        terrain("collide --resolution 16").arg(body).run().misused(&[body.split('=').next().unwrap()]);
+    let bodies = ["--segment=nan,2,3,1,2,4", "--segment=1,2,3", "--sphere=1,2,3,inf", "--sphere=a,b,c,d"];
+    // Of what is seen it has nothing.
+    let seen =
+        ["--camera=top", "--normals=nodes", "--start=rays", "--corners=image", "--mesh-error=2", "--crease-angle=9"];
+    for option in bodies.into_iter().chain(seen).chain(["--tile-memory=8"]) {
+        terrain("collide --resolution 16").arg(option).run().misused(&[option.split('=').next().unwrap()]);
     }
 }
 
@@ -224,6 +227,13 @@ fn figures_are_one_picture() {
     assert_eq!(entries(out.path()), ["terrain-figure-1.png", "terrain-figure-2.png"]);
     let read = |name: &str| fs::read(out.path().join(name)).unwrap();
     assert!(read("terrain-figure-1.png") != read("terrain-figure-2.png"));
+    // Of several variants the first that is named.
+    let of = |variants: &str| {
+        small(&format!("experiment figure-1 --variant {variants} --out .")).inside(out.path()).run().succeeded();
+        read("terrain-figure-1.png")
+    };
+    let mesh = of("mesh");
+    assert!(of("mesh,cpu") == mesh && of("gpu-compute,mesh") != mesh);
 }
 
 #[test]
@@ -315,6 +325,14 @@ fn rays_whose_loops_the_driver_ends_are_no_picture() {
         assert_eq!(entries(out.path()), ["canyon.asc"]);
     }
     terrain(&format!("{render} cpu")).on_test_device().inside(out.path()).run().succeeded();
+    // Of rays that come down to the base far behind the canyon another map has nothing to say.
+    file(&out, "other.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 0\n0 0\n");
+    let falling =
+        render.replace("-81819,50,0", "-81720,49.99,0") + " gpu-compute --map other.asc --place 0,0,0 --place 0,500,0";
+    terrain(&falling).on_test_device().inside(out.path()).run().refused(1, &["depth", "rays did not end"]);
+    // Triangles are seen without rays, and lit along the canyon's floor by rays.
+    let lit = format!("{render} mesh-lod --mesh-error 0.01 --shadows --sun 90,0.03");
+    terrain(&lit).on_test_device().inside(out.path()).run().refused(1, &["shadow", "rays did not end"]);
 }
 
 /// An object's place follows its name; it is drawn there, and the record has it.
@@ -461,6 +479,7 @@ fn options_that_an_experiment_would_not_heed_are_refused() {
         ("experiment 1 --resolution 64", "--counts"),
         ("experiment figure-1 --counts 64", "--counts"),
         ("experiment figure-1 --json", "--json"),
+        ("experiment steps --counts 64 --variant cpu", "--variant"),
         ("experiment screen --size 64x64", "--counts"),
     ] {
         terrain(arguments).run().refused(2, &[part]);

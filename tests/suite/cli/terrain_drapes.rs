@@ -74,3 +74,16 @@ fn drapes_are_drawn_of_the_land_itself() {
     }
     small("render --resolution 16 --drape slopes").inside(out.path()).run().refused(2, &["slopes"]);
 }
+
+/// Maps can take long to make.
+#[test]
+fn a_picture_that_is_none_is_refused_before_the_maps_are_made() {
+    let out = folder();
+    file(&out, "text.png", "no picture");
+    file(&out, "broken.asc", "no map");
+    for options in ["", "--stream --no-cache --variant tiled-compute"] {
+        let render = format!("render --quiet --map broken.asc --image none.png {options}");
+        small(&render).inside(out.path()).run().refused(2, &["broken.asc"]);
+        small(&render).args("--drape text.png").inside(out.path()).run().refused(2, &["text.png"]);
+    }
+}

@@ -2,6 +2,7 @@
 
 use super::program::{ONCE, entries, folder, terrain};
 use super::terrain::small;
+use crate::faults::Layer;
 
 /// The measurement waits until no tile is missing, and says how many there are and how long that took.
 #[test]
@@ -56,6 +57,22 @@ fn pools_without_room_are_told_of() {
         );
     }
     render("--variant tiled-compute --tile-memory 0 --image none.png").refused(2, &["--tile-memory 0", "1 to 65536"]);
+}
+
+/// More memory than one image has room for is no error, and is told of.
+#[test]
+fn pools_end_with_the_images_of_the_device() {
+    let out = folder();
+    let layer = Layer::new();
+    // An image of 4096 x 4096 texels holds 1024 of the 1372 tiles, for which this memory has room.
+    let render = |options: &str| {
+        let render = format!("render --resolution 4096 --variant tiled-compute --image x.png {options}");
+        layer.least(small(&render).inside(out.path())).run().succeeded().stderr
+    };
+    let said = render("--tile-memory 64");
+    assert!(said.contains("--tile-memory 64") && said.contains("lie in one image"), "{said}");
+    let said = render("--tile-memory 16");
+    assert!(!said.contains("--tile-memory"), "{said}");
 }
 
 /// Every stall of a flight is counted, and no picture is shown with a hole.

@@ -8,10 +8,10 @@ use fumarole::papers::terrain::{
     Base, Collider, Inputs, Interpolation, MapInput, Parameters, Placement, Stand, Surface,
 };
 use fumarole::scene::random::Random;
-use fumarole::scene::shapes;
+use fumarole::scene::{Samples, shapes};
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
-use super::maps::{alone, volcano};
+use super::maps::{alone, map, volcano};
 use super::world::{Relief, World, random_map};
 
 /// Steps along a segment.
@@ -300,4 +300,45 @@ fn what_lies_beside_touches_nothing() {
     assert_eq!((touch.surface, touch.distance_m), (Surface::Base, 5.0));
     assert!(touch.point.distance(DVec3::new(30_000.0, 0.0, 0.0)) < 1e-9, "{touch:?}");
     assert_eq!(collider.sphere(beside + DVec3::Y * 1e-6, 5.0), None);
+}
+
+/// A segment from far away that begins below the base is in the ground there, whatever land it would come to.
+#[test]
+fn a_segment_from_below_the_base_meets_it_at_once() {
+    let maps = alone(volcano(65));
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let over_land = DVec3::new(-6000.0, 100.0, 0.0);
+    // Near enough that single precision is enough, and so far away that the piece over the map is looked at alone.
+    for far_m in [2e4, 5e6] {
+        let climb = DVec3::new(1.0, 0.01, 0.0) * far_m;
+        let from = over_land - climb;
+        let contact = collider.segment(from, over_land + 1e5 * climb / far_m).unwrap();
+        assert_eq!((contact.surface, contact.t, contact.point), (Surface::Base, Some(0.0), from), "{far_m} m");
+        // From the base on it would meet the land.
+        let above = over_land - DVec3::new(1.0, 0.01, 0.0) * 5e3;
+        let contact = collider.segment(above, over_land + 1e5 * climb / far_m).unwrap();
+        assert!(!matches!(contact.surface, Surface::Base | Surface::Inside), "{contact:?}");
+    }
+}
+
+/// Level land at the very height of the base is land on the first map and on the next, however the segments come.
+#[test]
+fn land_in_the_base_is_met_on_every_map() {
+    let level = |x: f64| MapInput {
+        map: Arc::new(map(21, 21, Samples::Float(vec![70.0; 21 * 21]), 10.0)),
+        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
+    };
+    let maps = [level(-150.0), level(150.0)];
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let mut random = Random::new(11);
+    for number in 0..200 {
+        let mut place = |y: f64| {
+            let [x, z] = [(); 2].map(|()| 180.0 * (f64::from(random.unit()) - 0.5));
+            DVec3::new(x + if number % 2 == 0 { -150.0 } else { 150.0 }, y, z)
+        };
+        let (a, b) = (place(90.0), place(-0.001));
+        let contact = collider.segment(a, b).unwrap();
+        assert_eq!((contact.surface, contact.map), (Surface::Terrain, number % 2), "{a} to {b}: {contact:?}");
+        assert!(contact.point.y.abs() < 1e-3, "{contact:?}");
+    }
 }

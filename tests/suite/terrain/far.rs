@@ -26,14 +26,14 @@ fn level(cells: u32, height_m: f32, center_m: DVec2) -> MapInput {
     MapInput { map: Arc::new(map(cells + 1, cells + 1, samples, 400.0)), placement }
 }
 
-/// As a camera that a user sets has it, a metre before which pictures begin; `across_m` are seen from side to side.
+/// As a camera that a user sets has it, a centimetre before which pictures begin; `across_m` are seen from side to side.
 fn from_afar(away_m: f64, across_m: f64) -> Camera {
     Camera {
         eye: (away_m * DVec3::new(0.4, 0.25, 0.9).normalize()).as_vec3(),
         target: Vec3::ZERO,
         up: Vec3::Y,
         vertical_fov_rad: (0.75 * across_m / away_m) as f32,
-        near_m: 1.0,
+        near_m: 0.01,
         far_m: 1e6,
     }
 }

@@ -86,7 +86,7 @@ impl<'a> Trials<'a> {
         }
     }
 
-    fn assert_none_wrong(&self) {
+    pub fn assert_none_wrong(&self) {
         for Trial { variant, tally, .. } in &self.trials {
             assert!(tally.wrong.is_empty(), "{}:\n{}", variant.as_str(), tally.wrong.join("\n"));
         }

@@ -182,3 +182,30 @@ fn far_rough_land_stands_within_a_pixel_of_brute_force() {
         }
     });
 }
+
+/// Level land around a hole: a Catmull-Rom surface, whose nodes in the hole lie far below all of the land, rises over its rim.
+#[test]
+fn land_around_a_deep_hole_rises_as_brute_force_has_it() {
+    let head = "ncols 25\nnrows 21\nxllcorner 0\nyllcorner 0\ncellsize 20\nNODATA_value -9999\n";
+    let is_hole = |row: u32, column: u32| (9..12).contains(&row) && (10..15).contains(&column);
+    let height_m = |row: u32, column: u32| if is_hole(row, column) { "-9999 " } else { "100 " };
+    let rows: String =
+        (0..21).map(|row| (0..25).map(|column| height_m(row, column)).collect::<String>() + "\n").collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hole.asc");
+    std::fs::write(&path, format!("{head}{rows}")).unwrap();
+    let land = HeightMapSource::File(path).load().unwrap().with_voids(Voids::Hole, -40.0).unwrap();
+    assert_eq!(land.range_m(), (100.0, 100.0));
+    gpu_test(|device| {
+        let mut random = Random::new(84);
+        let mut trials = Trials::new(device, (48, 36));
+        for base in [Base::Plane, Base::Cylinder { radius_m: 3e5 }] {
+            let world = World::alone("a deep hole", base, Interpolation::Bicubic, Some(-40.0), land.clone());
+            let stands = [Stand::Above, Stand::Beside, Stand::Down];
+            let cameras: Vec<_> =
+                stands.iter().map(|&stand| (world.camera(stand, &mut random), format!("{stand:?}"))).collect();
+            trials.compare(&world, &cameras, THOUSANDTH);
+        }
+        trials.assert_none_wrong();
+    });
+}

@@ -1,8 +1,11 @@
 //! Scenes of more than one map, and cameras in odd places.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use fumarole::papers::terrain::{Drape, Inputs, Lod, MapInput, Parameters, Placement, Sun, Surface, Variant, View};
+use fumarole::papers::terrain::{
+    Base, Drape, Inputs, Lod, MapInput, Parameters, Placement, Rays, Sun, Surface, Variant, View,
+};
 use fumarole::scene::{Camera, Mesh, Samples, shapes};
 use glam::{DVec2, Mat4, Vec2, Vec3};
 
@@ -241,6 +244,92 @@ fn a_placed_drape_ends_at_its_border() {
                 }
             }
             assert!(inside > 100 && outside > 100, "{variant:?}: {inside} inside, {outside} outside");
+        }
+    });
+}
+
+/// Level maps at the very height of the base, in whatever order they come: each is seen, and the base around them.
+#[test]
+fn land_in_the_base_is_seen_on_every_map() {
+    gpu_test(|device| {
+        let places = [(-160.0, 10.0), (160.0, -40.0), (20.0, 220.0)].map(|(x, z)| DVec2::new(x, z));
+        let maps = places.map(|center_m| MapInput {
+            map: Arc::new(table(0.0)),
+            placement: Placement { center_m, ..Placement::default() },
+        });
+        let View::Camera(camera) = camera(Vec3::new(33.0, 417.3, 611.7), Vec3::new(3.0, 0.0, 60.0)) else { return };
+        let rays = Rays::new(&camera, 160, 120);
+        // Of the pixel's middle, the metres to the nearest border of a map and the map that it is in.
+        let seen = |pixel: usize| {
+            let direction = rays.corner + (pixel % 160) as f64 * rays.across + (pixel / 160) as f64 * rays.down;
+            let foot = rays.eye - rays.eye.y / direction.y * direction;
+            let inside_m = |center_m: DVec2| 100.0 - (DVec2::new(foot.x, foot.z) - center_m).abs().max_element();
+            let insides_m = places.map(inside_m);
+            let border_m = insides_m.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
+            (direction.y < 0.0 && border_m > 2.0).then_some(insides_m.iter().position(|inside_m| *inside_m > 0.0))
+        };
+        let view = View::Camera(camera);
+        let parameters = Parameters { view, base_level_m: Some(0.0), ..small(View::Side, Lod::Exact) };
+        for variant in VARIANTS.into_iter().chain([Variant::TiledCompute]) {
+            let drawing = Drawing::of(device, variant, &parameters, &maps);
+            let (mut judged, mut wrong) = ([0; 4], 0);
+            for (pixel, hit) in drawing.hits.iter().enumerate() {
+                let Some(expected) = seen(pixel) else { continue };
+                judged[expected.unwrap_or(3)] += 1;
+                let found = (hit.surface == Surface::Terrain).then_some(hit.map as usize);
+                let is_right = found == expected && (found.is_some() || hit.surface == Surface::Base && hit.map == 0);
+                wrong += usize::from(!is_right);
+            }
+            assert!(judged.iter().all(|pixels| *pixels > 300), "{variant:?}: {judged:?}");
+            assert!(wrong * 1000 <= drawing.hits.len(), "{variant:?}: {wrong} pixels of {judged:?} see something else");
+        }
+    });
+}
+
+/// A picture over the seam of a map that goes once round goes on beyond it.
+#[test]
+fn a_placed_drape_goes_on_across_the_seam() {
+    gpu_test(|device| {
+        let radius_m = 100.0;
+        let maps = alone(map(60, 20, Samples::Float(vec![5.0; 60 * 20]), TAU * f64::from(radius_m) / 60.0));
+        // From below: the map's middle is on top.
+        let View::Camera(below) = camera(Vec3::new(0.0, -500.0, 0.0), Vec3::new(0.0, -200.0, 0.0)) else { return };
+        let parameters = Parameters {
+            base: Base::Cylinder { radius_m },
+            base_level_m: Some(0.0),
+            haze_per_km: Some(0.0),
+            view: View::Camera(Camera { up: Vec3::Z, ..below }),
+            ..small(View::Side, Lod::Exact)
+        };
+        // The east half green, the west half red.
+        let texels = (0..32).map(|i| if i % 8 < 4 { [200, 40, 40, 255] } else { [40, 200, 40, 255] }).collect();
+        let (corner, cells) = (Vec2::new(56.0, 4.0), Vec2::new(9.0, 11.0));
+        let drape = Drape::new(8, 4, texels).unwrap().placed(corner, cells);
+        for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh, Variant::DdaFragment] {
+            let bare = Drawing::of(device, variant, &parameters, &maps);
+            let inputs = Inputs { maps: &maps, drape: Some(&drape), ..Inputs::default() };
+            let drawing = Drawing::with(device, variant, &parameters, &inputs);
+            let pixels = drawing.picture.pixels().chunks_exact(4).zip(bare.picture.pixels().chunks_exact(4));
+            let (mut before, mut beyond, mut outside) = (0, 0, 0);
+            for (hit, (pixel, bare)) in drawing.hits.iter().zip(pixels) {
+                // Two columns more on each side repeat those of the other.
+                let place = Vec2::from_array(hit.place) - Vec2::new(2.0, 0.0) - corner;
+                let fraction = Vec2::new(place.x.rem_euclid(60.0), place.y) / cells;
+                let edges = [fraction.x, fraction.x - 0.5, fraction.x - 1.0, fraction.y, fraction.y - 1.0];
+                if edges.iter().any(|off| off.abs() < 0.1) {
+                    continue;
+                }
+                let is_over = fraction.cmpgt(Vec2::ZERO).all() && fraction.cmplt(Vec2::ONE).all();
+                if hit.surface != Surface::Terrain || !is_over {
+                    assert_eq!(pixel, bare, "{variant:?} at {:?}", hit.place);
+                    outside += usize::from(hit.surface == Surface::Terrain);
+                    continue;
+                }
+                assert_eq!(pixel[1] > pixel[0], fraction.x > 0.5, "{variant:?}: {pixel:?} at {:?}", hit.place);
+                if place.x < 0.0 { beyond += 1 } else { before += 1 }
+            }
+            let name = format!("{variant:?}: {before} before, {beyond} beyond the seam, {outside} outside");
+            assert!(before > 30 && beyond > 30 && outside > 100, "{name}");
         }
     });
 }

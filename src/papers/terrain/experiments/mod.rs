@@ -125,10 +125,10 @@ pub fn options() -> Vec<Parameter<Options>> {
 
 /// Every experiment, in the paper's order.
 pub fn all() -> Vec<Experiment<Setup>> {
-    let by_map = |name, help, run| Experiment {
+    let by_map = |name, help, options, run| Experiment {
         name,
         help,
-        options: &["counts", "variant"],
+        options,
         refuses: &[
             ("map", "table 1 takes the synthetic volcano, which has any size"),
             ("resolution", "table 1 sweeps it; give `counts`"),
@@ -143,7 +143,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         run,
     };
     vec![
-        by_map("1", "Table 1: time by samples a side of the map, all variants", |context| {
+        by_map("1", "Table 1: time by samples a side of the map, all variants", &["counts", "variant"], |context| {
             tabulate(context, Axis::Map, &context.options.variants()).map(drop)
         }),
         figure("figure-1", "Figure 1: the volcano from above", |context| draw(context, View::Top)),
@@ -156,7 +156,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
             run: |context| tabulate(context, Axis::Screen, &context.options.variants()).map(drop),
         },
         // Every variant takes the same steps; the paper's second application stands for all.
-        by_map("steps", "Steps of each ray by samples a side of the map; a heat map of each", |context| {
+        by_map("steps", "Steps of each ray by samples a side of the map; a heat map of each", &["counts"], |context| {
             let points = tabulate(context, Axis::Map, &[Variant::GpuCompute])?;
             heat_maps(context, &points)
         }),
@@ -186,9 +186,15 @@ pub fn verbs() -> Vec<Experiment<Setup>> {
         options: &["segment", "sphere", "bodies"],
         refuses: &[
             ("object", NO_PICTURE),
+            ("crease-angle", NO_PICTURE),
             ("drape", NO_PICTURE),
+            ("normals", NO_PICTURE),
             ("shadows", NO_PICTURE),
             ("lod", NO_PICTURE),
+            ("start", NO_PICTURE),
+            ("corners", NO_PICTURE),
+            ("mesh-error", NO_PICTURE),
+            ("tile-memory", NO_PICTURE),
             ("sun", NO_PICTURE),
             ("haze", NO_PICTURE),
             ("camera", NO_PICTURE),
@@ -208,10 +214,8 @@ fn draw(context: &mut Context<'_>, view: View) -> Result<(), Error> {
         setup.parameters.view = view;
     }
     // All variants show one surface; of all, the paper's second application stands for them.
-    let variant = match context.options.variants().as_slice() {
-        [only] => *only,
-        _ => Variant::GpuCompute,
-    };
+    let first = context.options.variants.first().and_then(|Listed(first)| *first);
+    let variant = first.unwrap_or(Variant::GpuCompute);
     setup.load()?;
     let mut machine = context.open()?;
     let picture = figures::draw(&mut machine, &context.setup, variant)?;

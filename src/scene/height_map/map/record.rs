@@ -23,6 +23,8 @@ struct Record {
     /// East, north, steps east and south, in the source's unit.
     coordinates: Option<[f64; 4]>,
     voids: Option<(u64, Treatment)>,
+    /// The height of the nodes in holes.
+    hole: Option<f32>,
     /// The height, its samples, the lowest of the others.
     suspect: Option<(f64, u64, f64)>,
 }
@@ -58,6 +60,7 @@ impl HeightMap {
             geographic: self.geographic.map(|g| [g.west_deg, g.north_deg, g.step_deg.x, g.step_deg.y]),
             coordinates: self.coordinates.map(|c| [c.north_west.x, c.north_west.y, c.step.x, c.step.y]),
             voids: self.voids.as_ref().map(|voids| (voids.count(), treatment(voids))),
+            hole: self.hole_m,
             suspect: self.suspect.map(|suspect| (suspect.height_m, suspect.samples, suspect.next_m)),
         })
     }
@@ -87,6 +90,7 @@ impl HeightMap {
             coordinates: record
                 .coordinates
                 .map(|[east, north, x, y]| Coordinates { north_west: DVec2::new(east, north), step: DVec2::new(x, y) }),
+            hole_m: record.hole,
             voids: record.voids.map(|(count, how)| VoidSamples::anywhere(count, treatment(how))),
             suspect: record.suspect.map(|(height_m, samples, next_m)| Suspect { height_m, samples, next_m }),
             ..map
@@ -106,13 +110,16 @@ mod tests {
         let full = HeightMap::new(3, 2, steps).unwrap().with_geographic(place).with_void_samples(&[1, 5]);
         let full = full.with_spacing_m(DVec2::new(70.3, 92.6)).unwrap().with_suspect(Some(suspect));
         let level = full.clone().with_voids(Voids::Level(101.0), 0.0).unwrap();
+        let hole = full.clone().with_voids(Voids::Hole, 100.0).unwrap();
+        assert!(hole.lowest_node_m() < 100.0 && hole.range_m() == full.range_m());
         let plain = HeightMap::new(2, 2, Samples::Float(vec![0.1, -2.7, 3.0, 1.0e-20])).unwrap();
-        for map in [full, level, plain] {
+        for map in [full, level, hole, plain] {
             let (range_m, slope) = (map.range_m(), map.slope());
             let bare = map.clone().without_samples(range_m, slope).unwrap();
             assert_eq!(HeightMap::from_record(&map.to_record().unwrap()), Some(bare.clone()));
             assert_eq!(HeightMap::from_record(&bare.to_record().unwrap()), Some(bare.clone()));
             assert_eq!((bare.void_note(), bare.slope(), bare.range_m()), (map.void_note(), slope, range_m));
+            assert_eq!(bare.lowest_node_m(), map.lowest_node_m());
         }
         for text in ["", "{}", "{\"width\":1}"] {
             assert_eq!(HeightMap::from_record(text), None);
