@@ -188,38 +188,61 @@ Piece piece_at(vec3 place_m) {
     return Piece(to_edge_m, middle.xz, particle);
 }
 
-// 1 inside a toe, 0 on the seam between two: of the lava around a place by the kernel, what the nearest particle's toe has more than all others.
+const uint NO_TOE = 0xffffffffu;
+
+// 1 inside a toe, 0 on the seam between two: of the lava around a place by the kernel, what the toe that has most of it has more than the one
+// that has most beside it, over what both have. They are among the three toes whose particles lie nearest.
 float seam_at(vec3 place_m) {
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
     int highest = int(flow.counts.y) - 1;
-    float nearest = FAR_M;
-    uint toe = 0u;
+    vec3 nearest = vec3(FAR_M); // squared, of three toes
+    uvec3 toe = uvec3(NO_TOE);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
             for (uint i = first_of(stretch); i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 float squared = dot(way, way);
-                if (squared < nearest) {
-                    nearest = squared;
-                    toe = toes.list[items.list[i].y];
+                if (squared < nearest.z) {
+                    uint own = toes.list[items.list[i].y];
+                    // One that comes nearer than others pushes those behind it, up to its own place.
+                    bool is_first = own == toe.x || squared < nearest.x;
+                    bool is_second = own == toe.y || squared < nearest.y;
+                    if (is_first) {
+                        bool was_there = own == toe.x || own == toe.y;
+                        nearest.z = was_there ? nearest.z : nearest.y;
+                        toe.z = was_there ? toe.z : toe.y;
+                        nearest.y = own == toe.x ? nearest.y : nearest.x;
+                        toe.y = own == toe.x ? toe.y : toe.x;
+                        nearest.x = min(nearest.x, squared);
+                        toe.x = own;
+                    } else if (is_second) {
+                        nearest.z = own == toe.y ? nearest.z : nearest.y;
+                        toe.z = own == toe.y ? toe.z : toe.y;
+                        nearest.y = min(nearest.y, squared);
+                        toe.y = own;
+                    } else {
+                        nearest.z = squared;
+                        toe.z = own;
+                    }
                 }
             }
         }
     }
-    float more = 0.0;
-    float all = 0.0;
+    vec3 shares = vec3(0.0);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
             for (uint i = first_of(stretch); i < stretch.y; i++) {
                 float weight = kernel(length(apart(place_m - predicted.list[i].xyz)) / flow.support_m);
-                more += toes.list[items.list[i].y] == toe ? weight : -weight;
-                all += weight;
+                uint own = toes.list[items.list[i].y];
+                shares += weight * vec3(own == toe.x ? 1.0 : 0.0, own == toe.y ? 1.0 : 0.0, own == toe.z ? 1.0 : 0.0);
             }
         }
     }
-    return all > 0.0 ? abs(more) / all : 1.0;
+    float most = max(shares.x, max(shares.y, shares.z));
+    float next = max(min(shares.x, shares.y), min(max(shares.x, shares.y), shares.z));
+    return most > 0.0 ? (most - next) / (most + next) : 1.0;
 }
 
 const float CRACK = 0.2; // of what seam_at gives

@@ -23,9 +23,10 @@ layout(set = 0, binding = 2, std430) buffer Lamps {
 layout(push_constant, std430) uniform Squares {
     uvec2 count;
     uint side; // columns
+    uint step; // columns along either axis that one in their middle stands for
 } squares;
 
-const uint MOST_SIDE = 255u;
+const uint MOST_SIDE = 255u; // lavapipe ends all loops of a shader after 65,535 iterations
 
 void main() {
     uvec2 square = gl_GlobalInvocationID.xy;
@@ -33,21 +34,25 @@ void main() {
         return;
     }
     uvec2 columns = uvec2(scene.columns);
-    uint side = min(squares.side, MOST_SIDE);
+    uint steps = min((squares.side + squares.step - 1u) / squares.step, MOST_SIDE);
     vec2 column_m = scene.space_m.xz / scene.columns;
     vec4 place = vec4(0.0);
     vec3 area = vec3(0.0);
     vec3 light = vec3(0.0);
-    for (uint z = 0u; z < side; z++) {
-        for (uint x = 0u; x < side; x++) {
-            uvec2 column = square * side + uvec2(x, z);
-            if (column.x >= columns.x || column.y >= columns.y) {
+    for (uint z = 0u; z < steps; z++) {
+        for (uint x = 0u; x < steps; x++) {
+            uvec2 within = uvec2(x, z) * squares.step;
+            uvec2 first = square * squares.side + within;
+            if (first.x >= columns.x || first.y >= columns.y) {
                 continue;
             }
+            uvec2 count = min(uvec2(squares.step), min(uvec2(squares.side) - within, columns - first));
+            uvec2 column = first + count / 2u;
             vec4 surface = texelFetch(normal_height, ivec2(column), 0);
             vec2 across = (vec2(column) + 0.5) * column_m;
             vec3 place_m = vec3(across.x, surface.w, across.y);
-            float here = is_bare(place_m) ? 0.0 : column_m.x * column_m.y / max(surface.y, 0.05);
+            float all_m2 = float(count.x * count.y) * column_m.x * column_m.y;
+            float here = is_bare(place_m) ? 0.0 : all_m2 / max(surface.y, 0.05);
             place += here * vec4(place_m, 1.0);
             area += here * surface.xyz;
             light += here * glow_of(place_m);

@@ -9,8 +9,9 @@ float viscosity_at(uint at) {
     return viscosities.list[at];
 }
 
+// The harmonic mean, without the product, which single precision may not hold; the same in either order.
 float mean_of(float a, float b) {
-    return 2.0 * a * b / (a + b);
+    return 2.0 * min(a, b) * (max(a, b) / (a + b));
 }
 #else
 float viscosity_at(uint at) {

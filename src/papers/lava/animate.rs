@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::gpu_driven::SUBMISSION_S;
 use super::parameters::Parameters;
 use super::sph::Sph;
 use super::sph::parameters::Simulation;
@@ -14,6 +15,7 @@ use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Blend, Error, Frame, Image, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
+use crate::measure::estimate::per_second;
 
 host_block! {
     struct MotionConstants {
@@ -38,6 +40,8 @@ pub struct Animate {
     pub states: [State; 2],
     inflow: Inflow,
     steps: u32,
+    /// Turns of a fluid's loops in one submission. A frame of more is several.
+    pub most_work: f64,
 }
 
 /// By [`Simulation`].
@@ -124,7 +128,8 @@ impl Animate {
             }
         };
         let inflow = Inflow::of(parameters, particles.positions.len() as u32);
-        Ok(Animate { motion, states, inflow, steps: 0 })
+        let most_work = SUBMISSION_S * per_second(context.device());
+        Ok(Animate { motion, states, inflow, steps: 0, most_work })
     }
 
     /// Moves the particles one step, or a fluid by those of a frame.
@@ -138,7 +143,7 @@ impl Animate {
                 frame.graphics(pass, |draw| draw.constants(constants).vertices(3))?;
             }
             Motion::Sph(sph) => {
-                sph.record(frame, self.steps, &self.inflow)?;
+                sph.record(frame, self.steps, &self.inflow, self.most_work)?;
             }
         }
         self.steps += 1;
@@ -176,6 +181,12 @@ impl Animate {
     /// Steps in the time of a frame.
     pub fn substeps(&self) -> u32 {
         self.sph().map_or(1, |sph| sph.substeps)
+    }
+
+    /// Frames that `most` steps make, one at least, and of a fluid no more than a submission holds.
+    pub fn frames_within(&self, most: u32) -> u32 {
+        let held = self.sph().map_or(f64::INFINITY, |sph| sph.frames_within(self.most_work));
+        (most / self.substeps()).min(held as u32).max(1)
     }
 
     /// Index of the state that the last step wrote; the first before any.

@@ -12,6 +12,8 @@ use crate::host_block;
 
 /// Lamps along the longer side, at most.
 const LAMPS: u32 = 32;
+/// Columns along a side of a lamp's square that it looks at, at most, as in `lava/lava-light.comp`.
+const MOST_SIDE: u32 = 255;
 /// Bytes of a lamp.
 const LAMP: u64 = 48;
 
@@ -19,6 +21,7 @@ host_block! {
     struct SquareConstants {
         count: [u32; 2],
         side: u32,
+        step: u32,
     }
 }
 
@@ -51,7 +54,7 @@ impl LavaLight {
             .with("emission", &scene.emission)
             .with("lamps", &lamps)
             .build(context.shaders)?;
-        Ok(LavaLight { pass, constants: SquareConstants { count, side }, lamps })
+        Ok(LavaLight { pass, constants: SquareConstants { count, side, step: side.div_ceil(MOST_SIDE) }, lamps })
     }
 
     /// # Errors

@@ -59,6 +59,7 @@ mod splatting;
 mod start;
 mod targets;
 mod visibility;
+mod warnings;
 
 use std::sync::Arc;
 
@@ -138,7 +139,7 @@ pub struct Lava {
     pub normal_height: NormalHeight,
     /// Its temperatures; `None` of particles that have none.
     pub surface_temperature: Option<SurfaceTemperature>,
-    /// `None` without ropes and pieces.
+    /// `None` without ropes, pieces and toes.
     pub relief: Option<Relief>,
     /// Stage three.
     pub splatting: Splatting,
@@ -181,8 +182,9 @@ impl Paper for Lava {
             return Err(Error::Pass { pass: "animate".into(), problem });
         }
         if !is_repeated {
-            self.advance(frame, number, u32::MAX)?;
-            self.animate.record(frame)?;
+            while self.animate.steps() <= number {
+                self.animate.record(frame)?;
+            }
             self.method.cluster(frame, self.animate.current(), self.animate.out())?;
         }
         self.method.accumulate(frame)?;
@@ -208,11 +210,10 @@ impl Paper for Lava {
 
     fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
         let animate = &mut self.animate;
-        let frames = (most / animate.substeps()).max(1);
-        for _ in 0..number.saturating_sub(animate.steps()).min(frames) {
+        for _ in 0..number.saturating_sub(animate.steps()).min(animate.frames_within(most)) {
             animate.record(frame)?;
         }
-        Ok(number.saturating_sub(animate.steps()))
+        Ok(number.saturating_sub(animate.steps()).saturating_mul(animate.substeps()))
     }
 
     /// The thesis's last pass is the picture, but where it shows particles.
@@ -240,6 +241,7 @@ impl Paper for Lava {
 
     fn warnings(&self) -> Vec<String> {
         let mut warnings = [&self.view_warnings[..], &self.buried].concat();
+        warnings.extend(warnings::unheeded(&self.parameters, self.variant));
         if self.lacks_geometry_stage {
             warnings.push(
                 "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \

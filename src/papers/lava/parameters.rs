@@ -123,7 +123,7 @@ pub struct Parameters {
     pub daylight: f32,
     /// Share of the daylight that a fluid's skin mirrors, 0 to 1.
     pub gloss: f32,
-    /// Fate of what is brighter than the display.
+    /// Tone mapping of values brighter than the display.
     pub tone: Tone,
     /// Side of the square that the rock texture covers once in metres, above 0 and at most 1000.
     pub rock_tile_m: f32,
@@ -313,7 +313,7 @@ impl Parameters {
                 .range(Range::from(0.0).to(1.0))
                 .help("With sph: share of the daylight that the skin of the lava mirrors: the glass of fresh pahoehoe")
                 .section("3.2"),
-            Parameter::new("tone", field!(Parameters.tone)).help("Fate of what is brighter than the display"),
+            Parameter::new("tone", field!(Parameters.tone)).help("Tone mapping of values brighter than the display"),
             Parameter::new("rock-tile", field!(Parameters.rock_tile_m))
                 .range(up_to_1000)
                 .unit("metres")

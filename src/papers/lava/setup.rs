@@ -326,21 +326,28 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
         Some(times.iter().sum::<f64>() / 1e3).filter(|&s| s > 0.0)
     };
     let rate = |count: f64, names: &[&str]| json!(time_s(names).map(|s| count / s));
-    let particles = f64::from(parameters.particles);
+    // Those that have come out, of a vent.
+    let particles = f64::from(paper.animate.out());
     let grid_points = parameters.density.iter().map(|&n| f64::from(n)).product::<f64>();
     let splats = parameters.splats.iter().map(|&n| f64::from(n)).product::<f64>();
-    let on_particles = match paper.variant() {
-        Variant::Paper => &["animate", "cluster", "density"][..],
-        Variant::GpuDriven => {
-            &["animate", "cell-keys", "sort-count", "sort-sum", "sort-scatter", "arrange", "cell-starts", "density"]
+    let sorted = ["cell-keys", "sort-count", "sort-sum", "sort-scatter", "arrange", "cell-starts"];
+    let moved: Vec<&str> = match parameters.simulation {
+        Simulation::Free => vec!["animate"],
+        // Some of the fluid's passes depend on its numbers.
+        Simulation::Sph => {
+            measurement.passes.iter().map(|p| p.info.name).filter(|name| name.starts_with("sph-")).collect()
         }
     };
+    let is_sorted = paper.variant() == Variant::GpuDriven || parameters.simulation == Simulation::Sph;
+    let clustered = (paper.variant() == Variant::Paper).then_some("cluster");
+    let on_particles: Vec<&str> =
+        moved.into_iter().chain(sorted.into_iter().filter(|_| is_sorted)).chain(clustered).chain(["density"]).collect();
     let frame_ms = median(&measurement.frame_ms);
     entries([
         ("frames_per_s", json!(frame_ms.map(|ms| 1e3 / ms))),
         ("accepted_grid_points", json!(paper.accepted().map(|accepted| accepted.count))),
         ("density_range", json!(paper.accepted().map(|accepted| accepted.density_range))),
-        ("particles_per_s", rate(particles, on_particles)),
+        ("particles_per_s", rate(particles, &on_particles)),
         ("grid_points_per_s", rate(grid_points, &["density", "extract"])),
         ("splats_per_s", rate(splats, &["visibility", "blending"])),
     ])

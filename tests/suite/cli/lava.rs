@@ -270,6 +270,7 @@ fn lava_lies_on_a_map() {
         run["config"]
     );
     assert!(names(&run["passes"]).contains(&"objects"), "the ground is drawn: {}", run["passes"]);
+    assert!(run["results"]["particles_per_s"].as_f64().is_some_and(|rate| rate > 0.0), "{}", run["results"]);
     let refused = |options: &str, words: &[&str]| {
         small("render").args(options).inside(out.path()).run().refused(2, words);
     };

@@ -91,6 +91,16 @@ fn a_fluid_is_followed_over_many_steps() {
         .refused(2, &["--sides periodic"]);
 }
 
+/// Hot lava comes out under what is there, lifts it and pushes it aside.
+#[test]
+fn lava_out_of_a_vent_is_followed_over_many_steps() {
+    let vent = "--simulation sph --heat-capacity 12 --effusion-rate 0.1 --vent-radius 0.3 --vent 0.6,0.5 --frames 60";
+    let rows = rows("stability", vent);
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    // 0.2 of 0.72 m^3.
+    assert_eq!((number(first, "particles"), number(last, "particles")), (2.0, 111.0), "{rows:?}");
+}
+
 /// Every law at every frame, for more than a minute of lava that falls, spreads and comes to rest; it takes about as long.
 #[test]
 fn four_thousand_particles_hold_their_laws_for_two_thousand_frames() {

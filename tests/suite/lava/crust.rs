@@ -235,6 +235,11 @@ fn a_crust_that_does_not_fit_is_refused() {
     gpu_test(|device| assert!(drawn(device, &crusted(Crust::default())).relief.is_none()));
     let constant = |crust| Parameters { flow: Flow { crust, ..flowing().flow }, ..flowing() };
     let default = Crust::default();
+    let seamed = |density: [u32; 3]| {
+        let vent = Vent { effusion_m3_s: 0.25, middle_m: [0.4, 0.6], radius_m: 0.3, toe_m3: 0.02 };
+        Parameters { density, flow: Flow { vent, ..crusted(default).flow }, ..crusted(default) }
+    };
+    assert_eq!(seamed([40, 16, 24]).validate(), Ok(()));
     for (name, parameters) in [
         ("skin", constant(Crust { skin_m: 0.03, ..default })),
         ("pieces", constant(Crust { pieces: 1.5, ..default })),
@@ -244,6 +249,7 @@ fn a_crust_that_does_not_fit_is_refused() {
         ("healing", crusted(Crust { healing_s: 3.0, ..default })),
         ("skin", crusted(Crust { skin_m: 0.001, ..default })),
         ("skin", crusted(Crust { skin_m: f32::NAN, ..default })),
+        ("particles", seamed([2, 16, 2])),
     ] {
         let error = parameters.validate().expect_err(name);
         assert_eq!(error.name, name, "{error}");

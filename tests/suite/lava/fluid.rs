@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
-use fumarole::gpu::{Buffer, Device, ImageView, Mode, Recorder};
+use fumarole::gpu::{Buffer, Device, ImageView, Mode, Recorder, Track};
+use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::Fluid;
 use fumarole::papers::lava::sph::Scale;
 use fumarole::papers::lava::{
@@ -13,7 +14,7 @@ use fumarole::papers::lava::{
 use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
-use super::scene::{draw, parameters, shaders, texels};
+use super::scene::{draw, parameters, shaders, texels, variant_of};
 use super::splatting::{low_camera, ridge, stage};
 use crate::common::gpu_test;
 
@@ -270,6 +271,34 @@ fn two_runs_of_the_fluid_are_equal_to_the_bit() {
     });
 }
 
+/// Frames before one are caught up as many at a time as fit into a submission, and a frame that does not fit is several, which give the same to
+/// the bit. Both are counted in steps.
+#[test]
+fn late_frames_and_long_ones_are_several_submissions() {
+    gpu_test(|device| {
+        let flow = Flow { substeps: Some(3), corrections: 2, ..flowing().flow };
+        let parameters = Parameters { flow, ..flowing() };
+        let particles = Particles::of(&parameters);
+        let caught_up = |most_work: Option<f64>| {
+            let mut lava = variant_of(device, Variant::GpuDriven, &parameters, &particles);
+            lava.animate.most_work = most_work.unwrap_or(lava.animate.most_work);
+            let mut left = 0;
+            let mut recorder = Recorder::new(device).unwrap();
+            recorder.run(Mode::Plain, |frame| lava.advance(frame, 5, 128).map(|steps| left = steps)).unwrap();
+            let frames = lava.animate.steps();
+            let sample = draw(device, &mut lava, 5);
+            let submissions = sample.spans.iter().filter(|span| span.track == Track::Wait).count();
+            ((frames, left, submissions > 1), texels::<u32>(device, &lava.animate.state().positions))
+        };
+        let (found, whole) = caught_up(None);
+        assert_eq!(found, (5, 0, false));
+        // Less than a frame of three steps.
+        let (found, parted) = caught_up(Some(1e5));
+        assert_eq!(found, (1, 12, true));
+        assert!(parted == whole);
+    });
+}
+
 #[test]
 fn numbers_that_make_no_fluid_are_refused() {
     let good = flowing();
@@ -279,6 +308,7 @@ fn numbers_that_make_no_fluid_are_refused() {
     let cases = [
         ("block", flow(Flow { block_m: Vec3::new(2.1, 0.5, 0.5), ..of.clone() })),
         ("block", flow(Flow { block_m: Vec3::new(0.0, 0.5, 0.5), ..of.clone() })),
+        ("space", Parameters { particles: 8000, space_m: Vec3::splat(1000.0), ..good.clone() }),
         ("viscosity", flow(Flow { viscosity_pa_s: 1e6, ..of.clone() })),
         ("viscosity", flow(Flow { viscosity_pa_s: f32::NAN, ..of.clone() })),
         ("melt-density", flow(Flow { melt_kg_m3: 0.0, ..of.clone() })),

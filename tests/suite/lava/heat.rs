@@ -402,6 +402,25 @@ fn the_face_of_a_crust_glows() {
     assert!((face - 918.2).abs() < 0.1, "{face}");
 }
 
+/// Next to no viscosity or conductivity, relative to which other numbers are so large that single precision does not hold their products.
+#[test]
+fn next_to_no_viscosity_and_conductivity_move_lava() {
+    gpu_test(|device| {
+        let thin = Parameters { flow: Flow { viscosity_pa_s: 1e-25, ..flowing().flow }, ..flowing() };
+        let insulated = Heat { conductivity_w_mk: 2e-38, ..hot() };
+        for parameters in [with_heat(thin, hot()), with_heat(flowing(), insulated)] {
+            let mut animate = animate(device, &parameters, &half_cold(&parameters));
+            run(device, &mut animate, 3);
+            let sph = animate.sph().unwrap();
+            let viscous = by_cells(device, &sph.velocities[sph.iterations() % 2], 600);
+            let (places, velocities) = state(device, &animate, 600);
+            assert!(viscous.iter().chain(&places).chain(&velocities).all(|value| value.is_finite()));
+            let heat: Vec<[f32; 2]> = list(device, &sph.heat);
+            assert!(heat.iter().all(|[kelvin, _]| (300.0..1423.1).contains(kelvin)));
+        }
+    });
+}
+
 #[test]
 fn numbers_of_heat_that_cannot_be_are_refused() {
     let basalt = with_heat(flowing(), hot());
@@ -426,6 +445,7 @@ fn numbers_of_heat_that_cannot_be_are_refused() {
         ("crust-viscosity", heat(Heat { crust_pa_s: 50.0, ..hot() })),
         ("crust-viscosity", heat(Heat { crust_pa_s: 1e6, ..hot() })),
         ("viscosity", Parameters { flow: Flow { viscosity_pa_s: 0.0, ..basalt.flow.clone() }, ..basalt.clone() }),
+        ("viscosity", Parameters { flow: Flow { viscosity_pa_s: 1e-28, ..basalt.flow.clone() }, ..basalt.clone() }),
     ];
     for (name, parameters) in cases {
         let error = parameters.validate().expect_err(name);

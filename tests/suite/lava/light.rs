@@ -84,6 +84,34 @@ fn lamps_shine_as_the_surface_does() {
     });
 }
 
+/// Of more columns than a lamp looks at one by one, those at the far end count too.
+#[test]
+fn lamps_of_many_columns_stand_for_all_of_them() {
+    gpu_test(|device| {
+        let parameters = Parameters { density: [8320, 8, 8], ..hot() };
+        let mut particles = Particles::of(&parameters);
+        for place in &mut particles.positions {
+            place.x += 1.4;
+        }
+        let rock = Rock::built_in();
+        let mut lava =
+            Lava::new(&shaders(device), "test", Variant::GpuDriven, &parameters, &particles, rock, &[]).unwrap();
+        draw(device, &mut lava, 0);
+        let floats: Vec<f32> = list(device, &lava.lava_light.as_ref().unwrap().lamps);
+        let lamps = floats.as_chunks::<12>().0;
+        assert_eq!(lamps.len(), 32);
+        // What a lamp covers, seen from above.
+        let found: f64 = lamps.iter().map(|lamp| f64::from(lamp[3]) * f64::from(lamp[5])).sum();
+        let surface: Vec<[f32; 4]> = texels(device, &lava.normal_height.surface);
+        let least = 0.25 * parameters.flow.spacing_m(600);
+        let covered = surface.iter().filter(|texel| f64::from(texel[3]) > least);
+        let column = 2.0 / 8320.0 * 1.2 / 8.0;
+        let expected: f64 = covered.map(|texel| column * f64::from(texel[1] / texel[1].max(0.05))).sum();
+        println!("{found} {expected}");
+        assert!(expected > 0.1 && (found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    });
+}
+
 /// A ball over hot lava is orange below and grey above; over lava that has gone cold it is grey all over.
 #[test]
 fn a_ball_over_lava_is_lit_from_below() {

@@ -29,6 +29,8 @@ const DENSEST: f64 = 2.0;
 const FASTEST: f64 = std::f64::consts::SQRT_2;
 /// Distances of particles that pressure alone moves one in the first step, at most.
 const PRESSED: f64 = 0.25;
+/// Distances of particles that one is moved in a step, at most, where lava comes out among others: one that lies on it pushes it off by itself.
+const PUSHED: f64 = 1.0;
 /// Heat that may come from nothing, and energy, over the most that there is.
 const GAINED: f64 = 1e-4;
 
@@ -63,6 +65,8 @@ struct Found {
     denser: f64,
     /// Kinetic and potential, above that at rest in the space's lowest place.
     energy_j_kg: f64,
+    /// Potential of the highest particle, above that.
+    highest_j_kg: f64,
     mean_k: f64,
 }
 
@@ -72,6 +76,8 @@ struct Laws {
     gravity_m_s2: DVec3,
     lowest_j_kg: f64,
     fastest_m_s: f64,
+    /// Beside it, of lava that is pushed aside by what comes out of a vent; 0 without.
+    pushed_m_s: f64,
     /// Of the block at the start; none of lava that is pushed out of a vent.
     energy_j_kg: Option<f64>,
     coldest_k: f64,
@@ -90,12 +96,15 @@ impl Laws {
         let highest = places.iter().map(|place| -gravity_m_s2.dot(*place) - lowest_j_kg).fold(0.0, f64::max);
         let all = places.iter().map(|place| -gravity_m_s2.dot(*place) - lowest_j_kg).sum::<f64>() / places.len() as f64;
         let heat = &p.flow.heat;
+        let Scale { spacing_m, step_s, .. } = Scale::of(p);
+        let is_block = p.flow.vent.effusion_m3_s == 0.0;
         Laws {
             space_m,
             gravity_m_s2,
             lowest_j_kg,
             fastest_m_s: FASTEST * (2.0 * highest).sqrt(),
-            energy_j_kg: (p.flow.vent.effusion_m3_s == 0.0).then_some(all),
+            pushed_m_s: if is_block { 0.0 } else { PUSHED * spacing_m / step_s },
+            energy_j_kg: is_block.then_some(all),
             coldest_k: heat.ambient_k.into(),
             hottest_k: heat.melt_k.into(),
             keeps_heat: heat.emissivity == 0.0,
@@ -105,8 +114,15 @@ impl Laws {
     /// A frame's particles by its numbers; what is wrong with one of them.
     fn found(&self, bed: &Bed, state: &State, densities: &[f64]) -> Result<Found, String> {
         let count = state.places.len() as f64;
-        let mut found =
-            Found { fastest_m_s: 0.0, mean_m_s: 0.0, densest: 0.0, denser: 0.0, energy_j_kg: 0.0, mean_k: 0.0 };
+        let mut found = Found {
+            fastest_m_s: 0.0,
+            mean_m_s: 0.0,
+            densest: 0.0,
+            denser: 0.0,
+            energy_j_kg: 0.0,
+            highest_j_kg: 0.0,
+            mean_k: 0.0,
+        };
         for (at, ((place, velocity), kelvin)) in
             state.places.iter().zip(&state.velocities).zip(&state.kelvin).enumerate()
         {
@@ -120,7 +136,9 @@ impl Laws {
             let speed = velocity.length();
             found.fastest_m_s = found.fastest_m_s.max(speed);
             found.mean_m_s += speed / count;
-            found.energy_j_kg += (0.5 * speed * speed - self.gravity_m_s2.dot(*place) - self.lowest_j_kg) / count;
+            let potential_j_kg = -self.gravity_m_s2.dot(*place) - self.lowest_j_kg;
+            found.highest_j_kg = found.highest_j_kg.max(potential_j_kg);
+            found.energy_j_kg += (0.5 * speed * speed + potential_j_kg) / count;
             found.mean_k += kelvin / count;
             let slack = GAINED * (self.hottest_k - self.coldest_k) + 1e-3;
             if !(self.coldest_k - slack..=self.hottest_k + slack).contains(kelvin) {
@@ -145,11 +163,18 @@ impl Laws {
         self.fastest_m_s = self.fastest_m_s.max(first.fastest_m_s.min(pressed_m_s));
     }
 
+    /// Lava that comes out lifts what lies above it, which falls from there.
+    fn lift(&mut self, now: &Found) {
+        if self.energy_j_kg.is_none() {
+            self.fastest_m_s = self.fastest_m_s.max(FASTEST * (2.0 * now.highest_j_kg).sqrt());
+        }
+    }
+
     /// Fails by the first law that a frame breaks after another.
     fn hold(&self, before: &Found, now: &Found) -> Result<(), String> {
         let Found { fastest_m_s, densest, energy_j_kg, mean_k, .. } = *now;
-        if fastest_m_s > self.fastest_m_s {
-            let bound = self.fastest_m_s;
+        let bound = self.fastest_m_s + self.pushed_m_s;
+        if fastest_m_s > bound {
             return Err(format!(
                 "a particle has {fastest_m_s:.2} m/s, more than {bound:.2} m/s that its fall can give it"
             ));
@@ -164,7 +189,9 @@ impl Laws {
         }
         let slack = GAINED * (self.hottest_k - self.coldest_k) + 1e-3;
         let is_lost = self.keeps_heat && (mean_k - self.hottest_k).abs() > slack;
-        if mean_k > before.mean_k + slack || is_lost {
+        // Of a block; what comes out of a vent is as hot as any.
+        let is_gained = self.energy_j_kg.is_some() && mean_k > before.mean_k + slack;
+        if is_gained || is_lost {
             return Err(format!("the mean temperature goes from {:.4} to {mean_k:.4} K", before.mean_k));
         }
         Ok(())
@@ -244,6 +271,7 @@ pub fn follow(
             if before.is_none() {
                 laws.settle(&found, PRESSED * spacing_m / step_s);
             }
+            laws.lift(&found);
             laws.hold(before.as_ref().unwrap_or(&found), &found)?;
             Ok(found)
         });
@@ -275,12 +303,16 @@ pub fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::papers::lava::{Flow, Vent};
 
     fn laws() -> (Laws, State) {
-        let p = Parameters::default();
+        laws_of(&Parameters::default())
+    }
+
+    fn laws_of(p: &Parameters) -> (Laws, State) {
         let places = vec![DVec3::new(0.5, 0.4, 0.5), DVec3::new(0.6, 0.1, 0.5)];
         let state = State { velocities: vec![DVec3::ZERO; 2], kelvin: vec![1423.0, 1400.0], places };
-        (Laws::of(&p, &Bed::level(), &state.places), state)
+        (Laws::of(p, &Bed::level(), &state.places), state)
     }
 
     /// Each law, by a state that breaks it alone.
@@ -310,5 +342,25 @@ mod tests {
         assert!(held(Found { mean_k: 1412.0, ..found }).contains("temperature"));
         assert_eq!(counted(&[[5, 1], [7, 0]]), Ok(()));
         assert!(counted(&[[5, 1], [7, 1]]).is_err() && counted(&[[5, 2], [7, 1]]).is_err());
+    }
+
+    /// Lava that comes out is hot, lifts what is there and pushes it aside; it is as dense, as cold and as hot as other lava may be.
+    #[test]
+    fn what_comes_out_of_a_vent_heats_lifts_and_pushes() {
+        let vent = Vent { effusion_m3_s: 0.01, ..Vent::default() };
+        let p = Parameters { flow: Flow { vent, ..Flow::default() }, ..Parameters::default() };
+        let ((block, state), (mut laws, _)) = (laws(), laws_of(&p));
+        let found = block.found(&Bed::level(), &state, &[1.0, 1.1]).unwrap();
+        let hotter = Found { mean_k: found.mean_k + 1.0, ..found };
+        assert!(block.hold(&found, &hotter).is_err());
+        assert_eq!(laws.hold(&found, &hotter), Ok(()));
+        let pushed = Found { fastest_m_s: block.fastest_m_s + 0.9 * laws.pushed_m_s, ..found };
+        assert!(block.hold(&found, &pushed).is_err() && laws.pushed_m_s > 0.1);
+        assert_eq!(laws.hold(&found, &pushed), Ok(()));
+        let falling = Found { fastest_m_s: 1.5 * block.fastest_m_s + laws.pushed_m_s, ..found };
+        assert!(laws.hold(&found, &falling).is_err());
+        laws.lift(&Found { highest_j_kg: 4.0 * found.highest_j_kg, ..found });
+        assert_eq!(laws.hold(&found, &falling), Ok(()));
+        assert!(laws.hold(&found, &Found { densest: 2.1, ..found }).is_err());
     }
 }

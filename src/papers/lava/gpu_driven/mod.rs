@@ -37,7 +37,7 @@ pub use self::cells::Cells;
 pub use self::estimate::estimate;
 
 /// Time of a submission, by a rough rate: short for who waits for a frame of hours to be given up.
-const SUBMISSION_S: f64 = 1.0;
+pub const SUBMISSION_S: f64 = 1.0;
 
 /// Stages one and two behind `animate`.
 pub struct GpuDriven {

@@ -1,5 +1,6 @@
 //! Relief of a fluid's crust (chapter 3): ropes by the skin's length, pieces by the particle that lies nearest, gaps by the flow's stretching.
 
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
@@ -230,15 +231,23 @@ impl Crust {
                 let q = (place.distance(top) / reach).min(1.0);
                 (1.0 - q).powi(4) * (1.0 + 4.0 * q)
             };
-            let all = particles.iter().map(|(place, _)| weight(*place)).sum::<f64>();
-            let nearest = particles.iter().min_by(|a, b| a.0.distance(top).total_cmp(&b.0.distance(top)));
+            // Of each toe the weight, and the distance of its nearest particle.
+            let mut toes: BTreeMap<u32, (f64, f64)> = BTreeMap::new();
+            for (place, number) in particles {
+                let (sum, nearest) = toes.entry(self.toes[*number as usize]).or_insert((0.0, f64::INFINITY));
+                *sum += weight(*place);
+                *nearest = nearest.min(place.distance(top));
+            }
+            let mut toes: Vec<(f64, f64)> = toes.into_values().collect();
+            toes.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let share = |at: usize| toes.get(at).map_or(0.0, |toe| toe.0);
             // Particles at the rim of the kernel may have left the cells in which they are looked for.
-            texel_of.is_uncertain |= all < 1e-2;
-            if let Some(&(_, number)) = nearest.filter(|_| all > 0.0) {
-                let toe = self.toes[number as usize];
-                let own = particles.iter().filter(|(_, number)| self.toes[*number as usize] == toe);
-                let own = own.map(|(place, _)| weight(*place)).sum::<f64>();
-                let inside = (2.0 * own / all - 1.0).abs();
+            texel_of.is_uncertain |= share(0) + share(1) < 1e-2;
+            // Of the two that have most either may be none of the three that lie nearest.
+            let is_near = |toe: &(f64, f64)| toes.iter().filter(|other| other.1 < toe.1 + 1e-6).count() <= 3;
+            texel_of.is_uncertain |= !toes.iter().take(2).filter(|toe| toe.0 > 0.0).all(is_near);
+            if share(0) > 0.0 {
+                let inside = (share(0) - share(1)) / (share(0) + share(1));
                 // The fold of a quarter of an ellipse, by its angle.
                 let angle = (1.0 - inside).acos();
                 relief -= self.seam.min(0.8 * mean.depth) * (1.0 - angle.sin());
@@ -250,5 +259,52 @@ impl Crust {
         }
         texel_of.height = (mean.depth + relief).max(mean.depth.min(0.5 * self.least));
         texel_of
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lava half a metre deep of toes whose particles have these distances from the place, above it.
+    fn lowered(toes: &[(u32, f64)]) -> f64 {
+        let columns = Columns {
+            counts: [1, 1],
+            space: DVec2::ONE,
+            motion: vec![[0.0, 0.0, 1400.0, 0.5]],
+            heat: vec![[1300.0, 1.0, 1.0, 0.0]],
+            carried: vec![[0.0; 4]],
+        };
+        let crust = Crust {
+            rope: 0.0,
+            piece: 0.0,
+            jumble: 0.0,
+            healing: 0.0,
+            kept: 1.0,
+            melt: 1423.0,
+            solidus: 1273.0,
+            ambient: 300.0,
+            least: 0.1,
+            seam: 0.1,
+            toes: toes.iter().map(|toe| toe.0).collect(),
+        };
+        let place = DVec2::splat(0.5);
+        let particle = |(number, &(_, away)): (usize, &(u32, f64))| (DVec3::new(0.5, 0.5 + away, 0.5), number as u32);
+        let particles: Vec<_> = toes.iter().enumerate().map(particle).collect();
+        let texel = crust.at(&columns, &particles, place, 0.01, 0.2);
+        assert!(!texel.is_uncertain);
+        0.5 - texel.height
+    }
+
+    /// Two toes meet in one if they have as much as each other, whatever a third has beside them; not if one has as much as two others together.
+    #[test]
+    fn seams_lie_between_the_two_toes_that_have_most() {
+        assert!((lowered(&[(0, 0.02), (1, 0.02)]) - 0.1).abs() < 1e-9);
+        assert!((lowered(&[(0, 0.02), (1, 0.02), (2, 0.1)]) - 0.1).abs() < 1e-9);
+        assert!(lowered(&[(0, 0.02), (0, 0.03)]).abs() < 1e-9);
+        // A third of the way from the seam: the depth of a quarter of an ellipse there.
+        let third = 0.1 * (1.0 - (1.0 - (2.0f64 / 3.0).powi(2)).sqrt());
+        let between = lowered(&[(0, 0.05), (0, 0.05), (1, 0.05), (2, 0.05)]);
+        assert!((between - third).abs() < 1e-9, "{between} {third}");
     }
 }

@@ -4,7 +4,8 @@ use super::super::parameters::Parameters;
 use super::MOST_ITERATIONS;
 use super::Scale;
 use super::chebyshev;
-use super::heat::{Heat, LEAST_INTERVAL_K, MOST_LATENT_K, Rheology};
+use super::heat::{Heat, LEAST_INTERVAL_K, MOST_LATENT_K, MOST_STIFFER, Rheology};
+use super::neighbours::MOST_IN_COLUMN;
 use super::parameters::{Flow, Sides, Simulation};
 use super::substeps;
 use crate::measure::ParameterError;
@@ -42,6 +43,17 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         &format!(
             "must be {least_m:.4} metres along every side at least, half a distance of the particles: make it wider, or take more \
              `particles`"
+        ),
+    )?;
+    let crowd = scale.in_column(parameters, parameters.particles);
+    ParameterError::check(
+        crowd <= f64::from(MOST_IN_COLUMN),
+        "space",
+        Extents(parameters.space_m.to_array()).text(),
+        &format!(
+            "is so large beside the `block` that its cells are {:.3} metres long, and three of them above each other would hold \
+             {crowd:.0} particles, of {MOST_IN_COLUMN} at most: make it smaller, or take fewer `particles`",
+            scale.cell_m(parameters, parameters.particles).max_element()
         ),
     )?;
     ParameterError::check(
@@ -149,6 +161,15 @@ fn check_heat(flow: &Flow, scale: &Scale) -> Result<(), ParameterError> {
         );
     }
     ParameterError::check(flow.viscosity_pa_s > 0.0, "viscosity", flow.viscosity_pa_s, "must be above 0 for basalt")?;
+    ParameterError::check(
+        heat.stiffest(flow.viscosity_pa_s) <= MOST_STIFFER,
+        "viscosity",
+        flow.viscosity_pa_s,
+        &format!(
+            "must be no less than a part in {MOST_STIFFER:e} of the `crust-viscosity`, {} pascal seconds: take more, or a softer crust",
+            heat.crust_pa_s
+        ),
+    )?;
     ParameterError::check(
         heat.crust_pa_s >= flow.viscosity_pa_s,
         "crust-viscosity",

@@ -129,18 +129,24 @@ impl Crust {
         )?;
         let range = "must be 0, or 1 to 1.5 distances of particles";
         ParameterError::check(self.pieces == 0.0 || self.pieces >= 1.0, "pieces", self.pieces, range)?;
+        let column_m = longest_column_m(parameters);
+        let is_held = |alone: Crust| alone.detail(parameters).is_none_or(|detail| detail <= MOST_DETAIL);
+        // Seams are as wide as particles lie apart.
         let problem = format!(
-            "is too fine for columns {:.4} metres long, of which the crust has {MOST_DETAIL} times as many at most: take a finer \
-             `density`",
-            longest_column_m(parameters)
+            "are too many for seams between toes on columns {column_m:.4} metres long, of which the crust has {MOST_DETAIL} times as \
+             many at most: take a finer `density` or fewer"
+        );
+        let has_seams_alone = is_held(Crust { skin_m: 0.0, pieces: 0.0, ..*self });
+        ParameterError::check(has_seams_alone, "particles", parameters.particles, &problem)?;
+        let problem = format!(
+            "is too fine for columns {column_m:.4} metres long, of which the crust has {MOST_DETAIL} times as many at most: take a finer \
+             `density`"
         );
         let ropes = ("skin", self.skin_m, Crust { pieces: 0.0, ..*self });
         let pieces = ("pieces", self.pieces, Crust { skin_m: 0.0, ..*self });
-        let seams = ("toe-volume", parameters.flow.vent.toe_m3, Crust { skin_m: 0.0, pieces: 0.0, ..*self });
-        [seams, ropes, pieces].into_iter().try_for_each(|(name, value, alone)| {
-            let is_held = alone.detail(parameters).is_none_or(|detail| detail <= MOST_DETAIL);
-            ParameterError::check(is_held, name, value, &problem)
-        })
+        [ropes, pieces]
+            .into_iter()
+            .try_for_each(|(name, value, alone)| ParameterError::check(is_held(alone), name, value, &problem))
     }
 }
 

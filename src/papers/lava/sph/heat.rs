@@ -9,6 +9,11 @@ const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 
 /// Least that lies between solidus and liquidus, kelvin.
 pub const LEAST_INTERVAL_K: f32 = 1.0;
+/// Most of a face's radiance over the heat that reaches it, per K^3: from there on it is as cold as what is around it to all digits, and single
+/// precision holds its product with fourth powers of temperatures.
+const MOST_RADIANCE: f64 = 1e20;
+/// Most viscosity over the melt's that sums of single precision are sure of.
+pub const MOST_STIFFER: f64 = 1e30;
 /// Most that latent heat is over the heat capacity, kelvin, 14 times as much as of basalt: sums of both are single numbers.
 pub const MOST_LATENT_K: f32 = 4000.0;
 
@@ -147,7 +152,8 @@ impl Heat {
     /// the face of what does not conduct, so that it keeps its heat.
     pub fn radiance(&self, spacing_m: f64) -> f64 {
         let conductance_w_m2k = 2.0 * f64::from(self.conductivity_w_mk) / spacing_m;
-        if conductance_w_m2k > 0.0 { f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k } else { 0.0 }
+        let radiance = f64::from(self.emissivity) * STEFAN_BOLTZMANN / conductance_w_m2k;
+        if conductance_w_m2k > 0.0 { radiance.min(MOST_RADIANCE) } else { 0.0 }
     }
 
     /// Radiance of a crust's face over the heat that reaches it, times the crust's thickness squared, for each kelvin that the particle below has lost,
@@ -168,5 +174,27 @@ impl Heat {
             Rheology::Constant => 1.0,
             Rheology::Basalt => f64::from(self.crust_pa_s) / f64::from(viscosity_pa_s),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Newton's step of `face_of` in `lava/sph-heat.comp`, from the hottest lava on.
+    #[test]
+    fn lava_that_hardly_conducts_has_a_face_of_finite_temperature() {
+        for conductivity_w_mk in [f32::from_bits(1), 1e-38, 1e-30, 1e-20, 1.5, 1e5] {
+            let radiance = Heat { conductivity_w_mk, ..Heat::default() }.radiance(0.001) as f32;
+            let face = 2000.0f32;
+            let excess = radiance * (face * face * face * face);
+            let step = excess / (1.0 + 4.0 * radiance * face * face * face);
+            assert!(
+                radiance > 0.0 && excess.is_finite() && (0.0..=500.1).contains(&step),
+                "{conductivity_w_mk}: {step}"
+            );
+        }
+        let plain = Heat::default().radiance(0.02);
+        assert!((plain / (0.95 * STEFAN_BOLTZMANN * 0.02 / 3.0) - 1.0).abs() < 1e-6, "{plain}");
     }
 }

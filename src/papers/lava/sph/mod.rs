@@ -42,6 +42,7 @@ pub mod substeps;
 pub mod surface_temperature;
 pub mod toes;
 pub mod vent;
+pub mod work;
 
 use std::sync::Arc;
 
@@ -65,6 +66,7 @@ use self::sph_rheology::sph_rheology;
 use self::sph_strain::sph_strain;
 use self::sph_viscosity::sph_viscosity;
 use self::vent::Inflow;
+use self::work::{MOST_PASSES, OTHER_PASSES, Work};
 use super::animate::State;
 use super::gpu_driven::Cells;
 use super::gpu_driven::sort::Sort;
@@ -139,6 +141,7 @@ pub struct Sph {
     pub(super) constants: FlowConstants,
     coefficients: Vec<Coefficients>,
     corrections: u32,
+    work: Work,
     /// Steps of a frame.
     pub substeps: u32,
     /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
@@ -250,6 +253,7 @@ impl Sph {
             sort,
             coefficients,
             corrections,
+            work: Work::of(parameters, &scale, &cells),
             substeps: scale.substeps,
             velocities,
             pushed,
@@ -263,22 +267,35 @@ impl Sph {
         })
     }
 
-    /// A frame's steps, after those of so many frames.
+    /// A frame's steps, after those of so many frames. Where they are more work than `most_work`, or very many passes, they are several
+    /// submissions.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, frames: u32, inflow: &Inflow) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, frames: u32, inflow: &Inflow, most_work: f64) -> Result<(), Error> {
         let first = frames.saturating_mul(self.substeps);
         for step in first..first.saturating_add(self.substeps) {
             let from = if step == 0 { START } else { 1 - step as usize % 2 };
-            self.record_step(frame, from, step, [step, step + 1].map(|steps| inflow.after(steps)))?;
+            self.record_step(frame, from, step, [step, step + 1].map(|steps| inflow.after(steps)), most_work)?;
         }
         Ok(())
     }
 
+    /// Frames of the whole pool in a submission of at most so much work; less than one where a frame is more.
+    pub fn frames_within(&self, most_work: f64) -> f64 {
+        self.work.steps_within(most_work, self.constants.particles) / f64::from(self.substeps)
+    }
+
     /// The step of this number from a state, the third of which is the start. Of the particles that are `out`, `before` have been so in
     /// the last step.
-    fn record_step(&self, frame: &mut Frame<'_>, from: usize, step: u32, [before, out]: [u32; 2]) -> Result<(), Error> {
+    fn record_step(
+        &self,
+        frame: &mut Frame<'_>,
+        from: usize,
+        step: u32,
+        [before, out]: [u32; 2],
+        most_work: f64,
+    ) -> Result<(), Error> {
         let Layings { kept, .. } = self.rock.layings(step);
         let kept_rock = u32::from(kept[0] > 0.0) | u32::from(kept[1] > 0.0) << 1;
         let constants = FlowConstants { particles: out, kept_rock, ..self.constants };
@@ -288,32 +305,36 @@ impl Sph {
             let constants = InflowConstants { first: before, count: out - before, width: constants.width };
             frame.compute(inflow, |dispatch| dispatch.constants(&constants).elements(constants.count))?;
         }
-        let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants| {
+        // Of the least work so many passes fill a submission.
+        let least = most_work / MOST_PASSES;
+        let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants, work: f64| {
+            frame.reserve_work(pass, work.max(least), most_work)?;
             frame.compute(pass, |dispatch| dispatch.constants(constants).elements(particles))
         };
+        let (each, walks, lists) = (f64::from(out), self.work.walks(out), self.work.lists(out));
         self.sort.record(frame, from, out)?;
         // The start has no step before it.
         let lasting = FlowConstants { kept: f32::from(u8::from(from < self.inflow.len())), ..constants };
-        run(frame, &self.forces[from], &lasting)?;
-        run(frame, &self.neighbours.began, &constants)?;
-        run(frame, &self.heat_pass, &constants)?;
+        run(frame, &self.forces[from], &lasting, OTHER_PASSES * each.max(least))?;
+        run(frame, &self.neighbours.began, &constants, walks)?;
+        run(frame, &self.heat_pass, &constants, lists)?;
         if let Some(rheology) = &self.rheology {
-            run(frame, &rheology.strain, &constants)?;
-            run(frame, &rheology.pass, &constants)?;
+            run(frame, &rheology.strain, &constants, lists)?;
+            run(frame, &rheology.pass, &constants, lists)?;
         }
-        run(frame, &self.drag, &constants)?;
+        run(frame, &self.drag, &constants, lists)?;
         for (at, &[kept, gained]) in self.coefficients.iter().enumerate() {
             let turn = at as u32 % 3;
-            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, turn, ..constants })?;
+            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, turn, ..constants }, lists)?;
         }
-        run(frame, &self.predict, &constants)?;
-        run(frame, &self.neighbours.predicted, &constants)?;
+        run(frame, &self.predict, &constants, each)?;
+        run(frame, &self.neighbours.predicted, &constants, walks)?;
         for at in 0..self.corrections as usize {
             let constants = FlowConstants { turn: at as u32 % 3, ..constants };
-            run(frame, &self.density[at % 2], &constants)?;
-            run(frame, &self.correct[at % 2], &constants)?;
+            run(frame, &self.density[at % 2], &constants, lists)?;
+            run(frame, &self.correct[at % 2], &constants, lists)?;
         }
-        run(frame, &self.finish[from], &constants)
+        run(frame, &self.finish[from], &constants, each)
     }
 
     /// Iterations of a step's viscosity.

@@ -16,6 +16,8 @@ use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView,
 
 /// Particles of a list, as in `lava/sph.glsl`.
 const LISTED: u32 = 96;
+/// Particles in three cells above each other at most, as there.
+pub const MOST_IN_COLUMN: u32 = 7200;
 /// Particles in a row of a texture by cells, as there, and rows that every device has.
 const ROW: u32 = 1 << 12;
 /// Texels of a list.
@@ -103,10 +105,10 @@ impl Neighbours {
         if bytes.iter().all(|byte| *byte == 0) {
             return Ok(());
         }
-        let problem =
-            "more than 7,200 particles lie in three cells above each other, beyond which drivers end loops; take a \
-                       shorter `time-step` or fewer `particles`"
-                .to_owned();
+        let problem = format!(
+            "more than {MOST_IN_COLUMN} particles lie in three cells above each other, beyond which drivers end loops; take a \
+             shorter `time-step` or fewer `particles`"
+        );
         Err(Error::Pass { pass: "sph-neighbours".to_owned(), problem })
     }
 }

@@ -32,7 +32,7 @@ choice! {
 /// The fluid, in the ranges of [`Flow::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flow {
-    /// Sides of the block of lava at the start along x, y and z in metres, from the space's first corner on; each above 0
+    /// Sides of the block of lava at the start along x, y and z in metres, from the corner at the origin on; each above 0
     /// and no longer than the space.
     pub block_m: Vec3,
     /// Dynamic viscosity in pascal seconds, 0 to 1,000,000.
@@ -90,7 +90,7 @@ impl Flow {
                 .placeholder("XxYxZ")
                 .range(Range::above(0.0).to(1000.0))
                 .unit("metres")
-                .help("With sph: sides of the block of lava at the start, in the space's first corner, at most as long as its; with an effusion rate the volume that comes out")
+                .help("With sph: sides of the block of lava at the start, in the corner at the origin, no larger than the space; with an effusion rate the volume that comes out")
                 .section("9")
                 .cost(Cost::Buffers),
             Parameter::new("viscosity", field!(Flow.viscosity_pa_s))

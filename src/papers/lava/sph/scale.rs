@@ -1,5 +1,7 @@
 //! Numbers that the discretization follows from.
 
+use glam::DVec3;
+
 use super::super::gpu_driven::Cells;
 use super::super::parameters::Parameters;
 use super::{kernel, substeps};
@@ -71,5 +73,18 @@ impl Scale {
     pub fn cells(&self, parameters: &Parameters, particles: u32) -> Cells {
         let most = particles.saturating_add(MORE_CELLS).min(1 << 24);
         Cells::of_side(parameters.space_m, self.support_m, most, particles)
+    }
+
+    /// Particles at rest in three cells above each other, full of lava as far as it goes. They are some dozens, unless a space has room for more
+    /// cells of the kernel's radius than there may be, so that they are larger.
+    pub fn in_column(&self, parameters: &Parameters, particles: u32) -> f64 {
+        let above = f64::from(self.cells(parameters, particles).counts[1].min(3));
+        let cell = self.cell_m(parameters, particles) / self.spacing_m;
+        (above * cell.element_product()).min(particles.into())
+    }
+
+    /// Sides of a cell in metres.
+    pub fn cell_m(&self, parameters: &Parameters, particles: u32) -> DVec3 {
+        parameters.space_m.as_dvec3() / DVec3::from(self.cells(parameters, particles).counts.map(f64::from))
     }
 }

@@ -28,7 +28,7 @@ pub fn particles(parameters: &Parameters) -> Particles {
     }
 }
 
-/// Places of a block in the space's first corner, layer by layer from the floor: as a lattice, shaken by a
+/// Places of a block in the corner at the origin, layer by layer from the floor: as a lattice, shaken by a
 /// twentieth of its distance so that no symmetry lasts.
 fn block(parameters: &Parameters) -> Vec<Vec3> {
     let block_m = parameters.flow.block_m;

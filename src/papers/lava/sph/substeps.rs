@@ -29,28 +29,41 @@ pub fn of(parameters: &Parameters, support_m: f64) -> u32 {
     parameters.flow.substeps.unwrap_or_else(|| needed(parameters, support_m).min(f64::from(MOST)) as u32)
 }
 
-/// Depth of the lava along gravity: of the block as it stands there; of what comes out of a vent the height of the room above that, or of all of
-/// it were it level.
+/// Depth of the lava along gravity: of the block as it stands there; of what comes out of a vent the height of the room above that, of all of it
+/// were it level, or of all of it in the end that the floor falls to.
 fn depth_m(parameters: &Parameters) -> f64 {
     let flow = &parameters.flow;
     let [x, y, z] = flow.block_m.as_dvec3().to_array();
-    if flow.vent.effusion_m3_s > 0.0 {
-        let floor_m2 = f64::from(parameters.space_m.x) * f64::from(parameters.space_m.z);
-        return f64::from(flow.vent.radius_m).max(x * y * z / floor_m2);
-    }
     // A bed has no slope of its own by default; it has hills.
     let (sine, cosine) = f64::from(flow.slope_deg(true)).to_radians().sin_cos();
+    if flow.vent.effusion_m3_s > 0.0 {
+        let space_m = parameters.space_m.as_dvec3();
+        let level_m = x * y * z / (space_m.x * space_m.z);
+        let pooled_m = match flow.sides {
+            Sides::Walls => pooled_m(x * y * z / space_m.z, space_m.x, [sine, cosine]),
+            Sides::Periodic => 0.0,
+        };
+        return f64::from(flow.vent.radius_m).max(level_m).max(pooled_m);
+    }
     match flow.sides {
-        Sides::Walls => x * sine + y * cosine,
+        // On a bed without a slope it stands as deep as it is high.
+        Sides::Walls => (x * sine + y * cosine).max(y),
         Sides::Periodic => y * cosine,
     }
+}
+
+/// Depth of so many square metres between a floor that is so long, slopes by the angle of this sine and cosine, and ends at a wall that stands on
+/// it: of a triangle with a right angle, sqrt(2 A / (cot a + tan a)), until it covers all of the floor.
+fn pooled_m(area_m2: f64, floor_m: f64, [sine, cosine]: [f64; 2]) -> f64 {
+    let wedge_m = (2.0 * area_m2 * sine * cosine).sqrt();
+    if wedge_m < floor_m * sine { wedge_m } else { area_m2 / floor_m * cosine + 0.5 * floor_m * sine }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::Scale;
     use super::*;
-    use crate::papers::lava::{Flow, Simulation};
+    use crate::papers::lava::{Flow, Simulation, Vent};
 
     /// As many as the root of what the column presses: finer particles, a longer step, fewer corrections.
     #[test]
@@ -70,5 +83,30 @@ mod tests {
             Scale::of(&Parameters { simulation: Simulation::Sph, particles, ..Parameters::default() }).step_s
         };
         assert!((step_s(40_000) - 1.0 / 90.0).abs() < 1e-9);
+    }
+
+    /// A square metre on 45 degrees is a triangle whose legs are a root of 2 long; twice the floor's triangle is a trapezium.
+    #[test]
+    fn lava_pools_where_the_floor_meets_the_end() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        assert!((pooled_m(1.0, 4.0, [half, half]) - 1.0).abs() < 1e-12);
+        assert!((pooled_m(1.0, 1.0, [half, half]) - 1.5 * half).abs() < 1e-12);
+        assert!((pooled_m(2.0, 4.0, [0.0, 1.0]) - 0.5).abs() < 1e-12);
+        let of = |change: &dyn Fn(&mut Parameters)| {
+            let vent = Vent { effusion_m3_s: 0.02, ..Vent::default() };
+            let flow = Flow { vent, ..Flow::default() };
+            let mut parameters =
+                Parameters { simulation: Simulation::Sph, particles: 400_000, flow, ..Parameters::default() };
+            change(&mut parameters);
+            (depth_m(&parameters), Scale::of(&parameters).substeps)
+        };
+        // 0.72 cubic metres: 0.18 metres deep were they level, 0.5 in the wedge.
+        let (deep_m, steps) = of(&|_| ());
+        assert!((deep_m - (1.44 * 10f64.to_radians().sin() * 10f64.to_radians().cos()).sqrt()).abs() < 1e-6);
+        let (level_m, fewer) = of(&|p| p.flow.slope_deg = Some(0.0));
+        assert!((level_m - 0.18).abs() < 1e-6 && fewer < steps, "{level_m} {fewer} {steps}");
+        // On a bed, which has no slope but hills, a block is as deep as it is high.
+        let (tall_m, _) = of(&|p| p.flow = Flow { block_m: glam::Vec3::new(0.01, 0.9, 1.0), ..Flow::default() });
+        assert!((tall_m - 0.9).abs() < 1e-6, "{tall_m}");
     }
 }

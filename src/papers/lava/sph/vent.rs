@@ -132,14 +132,12 @@ impl Vent {
         let is_basalt = self.toe_m3 == 0.0 || parameters.flow.heat.rheology == Rheology::Basalt;
         ParameterError::check(is_basalt, "toe-volume", self.toe_m3, "needs a skin, which only `rheology` basalt has")?;
         let block_m3 = parameters.flow.block_m.as_dvec3().element_product();
+        let least_m3 = least_toe_m3(block_m3);
         ParameterError::check(
-            block_m3 <= MOST_TOES * f64::from(self.toe_m3) || self.toe_m3 == 0.0,
+            self.toe_m3 >= least_m3 || self.toe_m3 == 0.0,
             "toe-volume",
             self.toe_m3,
-            &format!(
-                "must be at least {} cubic metres, so that the `block` is no more than {MOST_TOES} toes",
-                block_m3 / MOST_TOES
-            ),
+            &format!("must be at least {least_m3} cubic metres, so that the `block` is no more than {MOST_TOES} toes"),
         )
     }
 
@@ -160,7 +158,7 @@ impl Vent {
     }
 
     /// Places in the vent for so many particles, which fill it evenly however many follow each other: an additive sequence by
-    /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives.
+    /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives. Of a toe they lie within it.
     pub fn places(&self, parameters: &Parameters, margin_m: f64) -> Vec<Vec3> {
         /// The root of g^4 = g + 1.
         const G: f64 = 1.220_744_084_605_759_6;
@@ -171,16 +169,16 @@ impl Vent {
         let toes = self.toes(parameters);
         let vent_m = DVec2::from(self.middle_m.map(f64::from));
         let particle_m3 = parameters.flow.spacing_m(parameters.particles).powi(3);
-        let middle_m = |number: u32| {
+        let disc = |number: u32| {
             let out_m3 = f64::from(number) * particle_m3;
             let toe = toes.get(toe_of(&toes, out_m3) as usize);
-            toe.map_or(vent_m, |toe| toe.middle_m(out_m3 - toe.first_m3))
+            toe.map_or((vent_m, radius_m), |toe| (toe.middle_m(out_m3 - toe.first_m3), radius_m.min(toe.full().1)))
         };
         let place = |number: u32| {
-            let DVec2 { x, y: z } = middle_m(number);
+            let (DVec2 { x, y: z }, wide_m) = disc(number);
             let DVec3 { x: turn, y: height, z: share } = (first + f64::from(number) * step).fract();
             let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
-            let aside_m = radius_m * share.sqrt();
+            let aside_m = wide_m * share.sqrt();
             let height_m = margin_m + height * (radius_m - margin_m).max(0.0);
             DVec3::new(x + aside_m * cosine, height_m, z + aside_m * sine).as_vec3()
         };
@@ -188,10 +186,17 @@ impl Vent {
     }
 }
 
+/// Least mean volume of the toes of so much lava in cubic metres, as it is typed: the nearest number below may be too small.
+fn least_toe_m3(block_m3: f64) -> f32 {
+    let nearest = (block_m3 / MOST_TOES) as f32;
+    if f64::from(nearest) * MOST_TOES < block_m3 { nearest.next_up() } else { nearest }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::toes::radius_m;
     use super::*;
-    use crate::papers::lava::{Flow, Simulation};
+    use crate::papers::lava::{Flow, Heat, Simulation};
 
     fn parameters(effusion_m3_s: f32) -> Parameters {
         let vent = Vent { effusion_m3_s, ..Vent::default() };
@@ -221,5 +226,42 @@ mod tests {
             assert!(places[at + 1..].iter().take(30).all(|other| other.distance(*place) > 0.01), "{at}");
         }
         assert_ne!(places, vent.places(&Parameters { seed: 2, ..parameters }, 0.01));
+    }
+
+    /// Of thin toes out of a wide vent.
+    #[test]
+    fn lava_comes_out_within_its_toe() {
+        let vent = Vent { effusion_m3_s: 0.002, middle_m: [0.3, 0.6], radius_m: 0.07, toe_m3: 0.0001 };
+        let block_m = Vec3::new(0.3, 0.1, 0.45);
+        let flow = Flow { block_m, vent, ..Flow::default() };
+        let parameters = Parameters { particles: 3000, simulation: Simulation::Sph, flow, ..Parameters::default() };
+        let toes = vent.toes(&parameters);
+        let particle_m3 = parameters.flow.spacing_m(3000).powi(3);
+        assert!(radius_m(1.5e-4) < 0.07 && toes.len() > 50);
+        for (number, place) in vent.places(&parameters, 0.001).iter().enumerate() {
+            let out_m3 = number as f64 * particle_m3;
+            let toe = toes.iter().rfind(|toe| toe.first_m3 <= out_m3).unwrap();
+            let aside_m = DVec2::new(place.x.into(), place.z.into()).distance(toe.middle_m(out_m3 - toe.first_m3));
+            assert!(aside_m <= radius_m(toe.volume_m3) + 1e-6, "{number}: {aside_m}");
+        }
+    }
+
+    /// The bound of a message, typed back.
+    #[test]
+    fn the_least_toe_is_taken_as_it_is_told() {
+        for block_m in [Vec3::new(0.3, 0.2, 0.45), Vec3::new(1.2, 0.6, 1.0), Vec3::new(0.7, 0.1, 0.3)] {
+            let of = |toe_m3: f32| {
+                let vent = Vent { effusion_m3_s: 0.002, toe_m3, ..Vent::default() };
+                let heat = Heat { rheology: Rheology::Basalt, ..Heat::default() };
+                let flow = Flow { block_m, vent, heat, ..Flow::default() };
+                let parameters = Parameters { simulation: Simulation::Sph, flow, ..Parameters::default() };
+                vent.check(&parameters)
+            };
+            let told = of(1e-9).unwrap_err().range;
+            let bound = told.strip_prefix("must be at least ").unwrap().split(' ').next().unwrap();
+            let bound: f32 = bound.parse().unwrap();
+            assert_eq!(of(bound), Ok(()), "{told}");
+            assert!(of(bound.next_down().next_down()).is_err(), "{told}");
+        }
     }
 }
