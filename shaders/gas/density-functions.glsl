@@ -73,7 +73,8 @@ float gas_density(vec3 world) {
         return 0.0;
     }
     if (kind == CLOUDS) {
-        return opaque * pow(0.5 * (sin(value * in_hand.frequency) + 1.0), power);
+        // A device's sine may be a little below -1.
+        return opaque * pow(max(0.5 * (sin(value * in_hand.frequency) + 1.0), 0.0), power);
     }
     if (kind == HYPERTEXTURE) {
         vec3 q = (world - in_hand.center) / in_hand.half_extent_m;

@@ -12,4 +12,4 @@
 bool is_cut = false; // a loop of this thread was ended before its end
 
 uint made = 0u; // densities, or steps along a list, of this thread
-const uint MOST_MADE = 65536u; // after which a thread ends by itself, so that no dispatch is long
+const uint MOST_MADE = 65536u; // after which a thread, or a way through gas, ends by itself, so that no dispatch is long

@@ -47,6 +47,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         float transparency = 1.0;
         uint evaluations = 0u;
         bool is_over = false;
+        uint parts = 0u;
         do {
             vec3 point = entry + direction * at_m;
             Flight flight = Flight(0.0, length_m - at_m);
@@ -97,7 +98,8 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     is_over = true;
                 }
             }
-        } while (!is_over && !is_cut);
+            parts++;
+        } while (!is_over && !is_cut && parts < MOST_MADE);
         is_cut = is_cut || !is_over;
         // Nothing is kept of a way that was not followed to its end.
         if (!is_cut) {

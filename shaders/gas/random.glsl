@@ -1,4 +1,6 @@
-// Ways through gas that is filled up to the bounds of its bricks, and their random numbers.
+// Ways through gas that is filled up to the bounds of its bricks, and their random numbers. Where bounds lie so far above the
+// density that a part of a way is shorter than the last bit of the way so far, it never ends: whoever follows a way gives it up
+// after MOST_MADE parts, for not every device ends a loop by itself.
 
 #include "gas/bricks.glsl"
 

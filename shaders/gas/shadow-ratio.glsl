@@ -13,7 +13,8 @@ float transmittance_to(uint l, vec3 point) {
         vec2 segment = intersect(volume_segment(point, to_light.direction), vec2(0.0, to_light.distance_m));
         float at_m = segment.x;
         bool is_over = segment.x >= segment.y || passed <= 0.0;
-        while (!is_over && !is_cut) {
+        uint parts = 0u;
+        while (!is_over && !is_cut && parts < MOST_MADE) {
             vec3 place = point + to_light.direction * at_m;
             Flight flight = through(Flight(0.0, segment.y - at_m), place, to_light.direction);
             float free_m = free_way(flight);
@@ -27,6 +28,7 @@ float transmittance_to(uint l, vec3 point) {
                 }
                 is_over = passed <= 0.0;
             }
+            parts++;
         }
         is_cut = is_cut || !is_over;
     }

@@ -166,7 +166,8 @@ impl Pass {
     }
 
     /// Several passes that are one to the paper: recorded one after the other, with their barriers between them, under one
-    /// name, and described together. The compiler is naga only where all of them run naga's binaries.
+    /// name, and described together, by the kind of the first. The compiler is naga only where all of them run naga's
+    /// binaries.
     pub fn steps<const N: usize>(steps: [Pass; N]) -> [Pass; N] {
         let Some(mut whole) = steps.first().map(|first| PassInfo::clone(first.info())) else { return steps };
         let add = |names: &mut Vec<String>, more: &[String]| {
@@ -177,6 +178,10 @@ impl Pass {
             add(&mut whole.shaders, &info.shaders);
             add(&mut whole.reads, &info.reads);
             add(&mut whole.writes, &info.writes);
+            let blends: Vec<_> = info.blend.iter().copied().filter(|state| !whole.blend.contains(state)).collect();
+            whole.blend.extend(blends);
+            whole.depth = whole.depth.or(info.depth);
+            whole.counting = whole.counting.or(info.counting);
             whole
                 .binaries
                 .extend(info.binaries.iter().filter(|b| !whole.binaries.contains(b)).cloned().collect::<Vec<_>>());

@@ -247,15 +247,16 @@ const PARTICLES: Range = Range::from(0.0).to(1e6);
 const FACTOR: Range = Range::from(0.0).to(1e3);
 
 const FIRE_SCALE: &str = "Draw fire and smoke in pixels of so many along a side";
-const CLIMB: &str = "Heat along the surface comes this many times farther where flames lean, beside the one";
+const CLIMB: &str = "In the flames' direction heat travels 1 + this times as far";
 const WIND: &str = "Wind, which flames and smoke drift with, and which leans the climbing heat";
 const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";
+const TIME_DIVISION: &str = "Frames over which each tick is spread";
 const PRELOAD: &str = "Load what never changes before the first frame, or again in every frame";
 const KEEP_CONNECTED: &str = "Keep what is burnt out while something would come off, or let it; off where parts fall";
 const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
 const SETTING: &str = "melting: wax comes to rest in this time after the fire, of the natural look";
 const BURN_AWAY: &str = "solid: let what has burnt out leave as ash, of the natural look, or stay as char";
-const BENDING: &str = "Factor of how far what hangs by little bends before it falls, where parts do; 0 not at all";
+const BENDING: &str = "Scale of bending of weakly attached parts before they fall; 0 for none";
 const COLLAPSE: &str = "Let parts that nothing holds fall, of the natural look, or leave them in place";
 
 /// A field of [`Parameters`].
@@ -326,8 +327,7 @@ impl Parameters {
             row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z, 1048576 in all at most", "3.5.1")
                 .placeholder("XxYxZ"),
             row("active-limit", p!(active_limit), any, ACTIVE_LIMIT, "3.7.1"),
-            row("time-division", p!(time_division), R::from(1.0).to(64.0), "Spread each tick over so many", "3.7.2")
-                .unit("frames"),
+            row("time-division", p!(time_division), R::from(1.0).to(64.0), TIME_DIVISION, "3.7.2").unit("frames"),
             row("preload", p!(preload), any, PRELOAD, "3.7.4"),
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
             row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines),
@@ -354,7 +354,7 @@ impl Parameters {
                 .cost(Cost::Pipelines),
             row("exposure", p!(exposure), FACTOR, "Factor of the picture's light, of the natural look", "")
                 .cost(Cost::Constants),
-            row("tone", p!(tone), any, "Fate of what is brighter than the display, of the natural look", "")
+            row("tone", p!(tone), any, "Tone mapping of values brighter than the display, of the natural look", "")
                 .cost(Cost::Constants),
             row(
                 "lod",

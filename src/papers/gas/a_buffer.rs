@@ -128,13 +128,14 @@ impl ABuffer {
         Ok(counters.iter().map(|c| c.lost_pixels.max(c.most_lost_pixels)).max().unwrap_or(0))
     }
 
-    /// Evaluations of the density that `volume` has noted in the last band.
+    /// Evaluations of the density that `volume` has noted of the first `pixel_count` pixels of a band: behind those of the last
+    /// band stand others of bands before it.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
-    pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
+    pub fn evaluations(&self, shaders: &ShaderLibrary, pixel_count: usize) -> Result<u64, Error> {
         let pixels = read::<PixelBlock>(shaders, &self.pixels)?;
-        Ok(pixels.iter().map(|pixel| u64::from(pixel.evaluations)).sum())
+        Ok(pixels.iter().take(pixel_count).map(|pixel| u64::from(pixel.evaluations)).sum())
     }
 
     /// The sorted fragments of the last band of the last frame, pixel by pixel; `sections` are those between them.

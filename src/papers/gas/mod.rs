@@ -256,9 +256,7 @@ impl Gas {
     pub fn kept_fragments(&self, shaders: &ShaderLibrary) -> Result<Option<u64>, Error> {
         match self.parameters.lists {
             Lists::Linked => Ok(Some(self.passes.lists.wanted_fragments(shaders)?)),
-            Lists::Tiles | Lists::Nearest(_) if (self.passes.lists.capacity.rows as usize) < self.rows.len() => {
-                Ok(None)
-            }
+            Lists::Tiles | Lists::Nearest(_) if !self.is_one_band() => Ok(None),
             Lists::Tiles | Lists::Nearest(_) => {
                 Ok(Some(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum()))
             }
@@ -293,12 +291,19 @@ impl Gas {
         self.parameters.lists.nearest().map(|_| self.lost_pixels)
     }
 
-    /// Evaluations of the density along the viewer's rays in the last frame; in its last band, if there are several.
+    /// Evaluations of the density along the viewer's rays in the last frame; nothing is known of them where a band has
+    /// replaced those of another.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
-    pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
-        self.passes.lists.evaluations(shaders)
+    pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<Option<u64>, Error> {
+        let pixel_count = self.parameters.width as usize * self.rows.len();
+        self.is_one_band().then(|| self.passes.lists.evaluations(shaders, pixel_count)).transpose()
+    }
+
+    /// The lists hold all rows that are drawn.
+    fn is_one_band(&self) -> bool {
+        self.rows.len() <= self.passes.lists.capacity.rows as usize
     }
 }
 
@@ -353,7 +358,7 @@ impl Paper for Gas {
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let lists = &self.passes.lists;
-        let tile_calls = tiles::calls(lists.most_of_tile(shaders)?, self.scene.has_surface_gas());
+        let tile_calls = tiles::calls(lists.most_of_tile(shaders)?, self.scene.has_surface_gas())?;
         let capacity = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)?;
         if capacity.is_none() && tile_calls <= self.tile_calls {
             self.lost_pixels = lists.lost_pixels(shaders)?;

@@ -49,7 +49,9 @@ impl Carried {
     fn remedy(self) -> &'static str {
         match self {
             Carried::Sort | Carried::Resolve => "give a larger `size` or an `object` of fewer triangles",
-            Carried::Volume | Carried::LightAttenuation => "lower `steps` or `samples`, or `tau` with `march` delta",
+            Carried::Volume | Carried::LightAttenuation => {
+                "lower `steps` or `samples`, or with `march` delta `tau`, `opaque` or `power`"
+            }
         }
     }
 }
@@ -104,7 +106,9 @@ impl Calls {
             };
             if found.stuck[at] != 0 {
                 let pixels = unfinished_pixels(shaders, progress, pass)?;
-                return error(format!("the device ends its loops before one step of {pixels} is done"));
+                return error(format!(
+                    "one step of {pixels} takes more iterations than are allowed (65536, on some devices fewer)"
+                ));
             }
             if found.unfinished[at] == calls {
                 if calls >= MOST_CALLS {

@@ -17,8 +17,6 @@ use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
-use crate::measure::Error;
-use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
 use crate::measure::estimate::Estimate;
@@ -29,6 +27,7 @@ use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{self, Identity, Metrics, Study};
+use crate::measure::{Error, Paper, ParameterError, components};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
@@ -200,6 +199,12 @@ impl Default for Setup {
     }
 }
 
+/// Checks that a light is near enough to be as bright at the origin as the scenes' own, which no intensity reaches from farther.
+fn check_point_light(position: &Vec3) -> Result<(), ParameterError> {
+    let is_near = position.length_squared() <= 1e6;
+    ParameterError::check(is_near, "point-light", components(*position), "must be at most 1000 metres from the origin")
+}
+
 /// The passes that surfaces take, by every method of their lists.
 pub(super) const LIST_PASSES: [&str; 8] =
     ["tiles-empty", "tiles-count", "tiles-sum", "tiles-fill", "tiles-pixels", "fragments", "sort", "resolve"];
@@ -234,6 +239,7 @@ impl Study for Setup {
             let message = "`density-cache`: a table of densities knows no temperatures: leave out `volume-temperature`";
             return Err(Error::Input(message.to_owned()));
         }
+        self.point_lights.iter().try_for_each(check_point_light)?;
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
@@ -382,12 +388,15 @@ impl Study for Setup {
         let files = files.into_iter().chain(reading).map(|p| p.group("Gases"));
         let lights = [
             Parameter::new("light", field!(Setup.parallel_lights))
-                .help("Direction of light from infinity; takes the place of the scene's lights")
+                .help("Direction of light from infinity; takes the place of the scene's; up to 4 with those of `point-light`")
                 .default_text("the scene's")
                 .cost(Cost::Buffers)
                 .unrecorded(),
             Parameter::new("point-light", field!(Setup.point_lights))
-                .help("Position of a point light in metres; takes the place of the scene's lights")
+                .help(
+                    "Position of a point light in metres, at most 1000 from the origin; takes the place of the scene's; up to 4 \
+                     with those of `light`",
+                )
                 .default_text("the scene's")
                 .cost(Cost::Buffers)
                 .unrecorded(),

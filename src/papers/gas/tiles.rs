@@ -33,6 +33,8 @@ pub const CHUNK_BYTES: u64 = 8 * (TILE * TILE) as u64;
 const CHUNK: u32 = 32;
 /// Chunks of a tile that a dispatch of `fragments` does, without surface-defined gases and with some.
 const CHUNKS_A_CALL: [u32; 2] = [32, 4];
+/// Most dispatches of `fragments` for the triangles of a piece, as many as of a pass that carries work on.
+const MOST_CALLS: u32 = 4096;
 /// Threads of a row of a dispatch with a thread a triangle.
 const TRIANGLES_A_ROW: u32 = 1 << 16;
 /// Chunks of a row of a dispatch with a workgroup a chunk.
@@ -116,8 +118,19 @@ pub fn bytes(parameters: &Parameters, capacity: Capacity) -> f64 {
 }
 
 /// Dispatches of `fragments` for tiles of up to so many triangles.
-pub fn calls(most_of_tile: u32, has_surface_gas: bool) -> u32 {
-    most_of_tile.div_ceil(CHUNK).div_ceil(CHUNKS_A_CALL[usize::from(has_surface_gas)]).max(1)
+///
+/// # Errors
+/// [`Error::Pass`] for more than [`MOST_CALLS`].
+pub fn calls(most_of_tile: u32, has_surface_gas: bool) -> Result<u32, Error> {
+    let calls = most_of_tile.div_ceil(CHUNK).div_ceil(CHUNKS_A_CALL[usize::from(has_surface_gas)]).max(1);
+    if calls <= MOST_CALLS {
+        return Ok(calls);
+    }
+    let problem = format!(
+        "a tile of {TILE} x {TILE} pixels has {most_of_tile} triangles, for which {MOST_CALLS} dispatches are too few; give \
+         `lists` linked"
+    );
+    Err(Error::Pass { pass: "fragments".to_owned(), problem })
 }
 
 impl Tiles {
@@ -206,5 +219,21 @@ impl PieceOfTiles {
             pixels: rebound(&self.pixels)?,
             fragments: rebound(&self.fragments)?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_of_too_many_triangles_are_refused() {
+        for (has_surface_gas, of_call) in [(false, 1024), (true, 128)] {
+            let most = MOST_CALLS * of_call;
+            let found = [0, of_call, of_call + 1, most].map(|count| calls(count, has_surface_gas).unwrap());
+            assert_eq!(found, [1, 1, 2, MOST_CALLS]);
+            let error = calls(most + 1, has_surface_gas).unwrap_err().to_string();
+            assert!(error.contains("`lists` linked") && error.contains(&(most + 1).to_string()), "{error}");
+        }
     }
 }

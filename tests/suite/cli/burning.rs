@@ -471,3 +471,12 @@ fn the_umbrella_runs_it_too() {
     let listed = fumarole("burning passes --json").args(SMALL).arg("--device").arg(device()).run().succeeded().json();
     assert_eq!(listed[0]["paper"], "burning");
 }
+
+/// A pass of several steps has the blend states of all: a layer of fire is laid over the picture by the last of its steps.
+#[test]
+fn what_a_later_step_blends_is_told() {
+    let listed = small("passes --json --variant shell --look dissertation").args(BALL).run().succeeded().json();
+    let passes = listed[0]["passes"].as_array().unwrap();
+    let fire = passes.iter().find(|pass| pass["name"] == "draw-fire").unwrap();
+    assert_eq!((&fire["kind"], &fire["blend"]), (&"compute".into(), &serde_json::json!(["premultiplied over"])));
+}

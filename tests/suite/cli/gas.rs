@@ -391,6 +391,7 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--shadow-threshold -1", &["--shadow-threshold -1"]),
         ("--early-end 2", &["--early-end 2"]),
         ("--light 0,0,0", &["--light 0,0,0"]),
+        ("--point-light 0,1001,0", &["--point-light 0,1001,0", "1000 metres from the origin"]),
         ("--size 0x0", &["--size 0x0"]),
         ("--opaque -1", &["--opaque -1"]),
         ("--power 0", &["--power 0"]),

@@ -6,7 +6,8 @@ use fumarole::gpu::{Compiler, Device};
 use fumarole::papers::gas::model::{DensityFunction, Object, Volume};
 use fumarole::papers::gas::reference::rays::{Rays, Sampling};
 use fumarole::papers::gas::{March, Parameters, Variant};
-use glam::DVec3;
+use fumarole::scene::Camera;
+use glam::{DVec3, Vec3};
 
 use super::drawing::Drawing;
 use super::march::{FRAME, HEIGHT, WIDTH, gases, parameters};
@@ -154,5 +155,26 @@ fn ways_follow_from_the_seed() {
         assert!(one.radiance != whole.radiance);
         println!("{} densities in 16³ bricks, {} in one", one.evaluations, whole.evaluations);
         assert!(one.evaluations < whole.evaluations / 2);
+    });
+}
+
+/// Bounds so far above the density that a part of a way is shorter than the last bit of the way so far: such a way is given up
+/// on every device, from the eye and, where the eye looks at the ground below the gas, towards a light.
+#[test]
+fn a_way_that_gets_nowhere_is_refused() {
+    gpu_test(|device| {
+        let mut gas = gases()[1];
+        gas.texture.power = 30.0;
+        let seen = Parameters { samples: 1, width: 1, height: 1, ..tracked(&lit(vec![gas])) };
+        let (eye, target) = (Vec3::new(1.0, -0.95, 1.0), Vec3::new(-0.4, -1.3, -0.6));
+        let camera = Camera { eye, target, vertical_fov_rad: 0.02, ..seen.camera };
+        let below = Parameters { camera, ..seen.clone() };
+        for (pass, parameters) in [("volume", seen), ("light-attenuation", below)] {
+            let drawn = Drawing::tried(device, Variant::Surfaces, &parameters, &[ground()]);
+            let error = drawn.err().expect("no way through such gas ends").to_string();
+            for part in [pass, "`power`", "1 pixel"] {
+                assert!(error.contains(part), "{part}: {error}");
+            }
+        }
     });
 }

@@ -21,7 +21,7 @@ pub struct Drawing {
     pub tiles: Vec<Vec<u32>>,
     /// Pixels that a k-buffer says it shows less of than there is; nothing without one.
     pub lost_pixels: Option<u32>,
-    /// Evaluations of the density along the viewer's rays.
+    /// Evaluations of the density along the viewer's rays; 0 of a picture in several bands.
     pub evaluations: u64,
     pub picture: Rgba8,
     /// Times that the frame was recorded until lists and dispatches were enough.
@@ -93,7 +93,7 @@ impl Drawing {
             demand: gas.demand(&shaders).unwrap(),
             tiles: gas.tiles(&shaders).unwrap(),
             lost_pixels: gas.lost_pixels(),
-            evaluations: gas.evaluations(&shaders).unwrap(),
+            evaluations: gas.evaluations(&shaders).unwrap().unwrap_or_default(),
             picture,
             runs,
             targets,

@@ -278,6 +278,7 @@ fn fragments_of_all_bands_are_counted() {
             recorder.run(Mode::Plain, |frame| gas.record(frame, number)).unwrap();
             assert!(gas.settle(&shaders).unwrap());
             assert_eq!(gas.kept_fragments(&shaders).unwrap(), Some(expected));
+            assert_eq!(gas.evaluations(&shaders).unwrap(), None);
         }
         assert!(u64::from(gas.demand(&shaders).unwrap().fragments) < expected);
         let tiles = Parameters { lists: Lists::Tiles, ..parameters() };

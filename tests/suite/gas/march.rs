@@ -1,10 +1,14 @@
 //! The march of turbulent gas and of solids against rays in double precision.
 
+use std::ops::Range;
+
+use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
+use fumarole::measure::Paper;
 use fumarole::papers::gas::model::{DensityFunction, Front, Shape, SolidTexture, Swirl, Volume};
 use fumarole::papers::gas::parameters::Jitter;
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::{Rays, Sampling};
-use fumarole::papers::gas::{Parameters, Variant};
+use fumarole::papers::gas::{Gas, Parameters, Variant};
 use fumarole::scene::{Camera, Light};
 use glam::{DVec3, Vec3};
 
@@ -213,5 +217,29 @@ fn solids_are_shaded_by_their_gradient() {
             );
             assert!(mean < most && brightest > 0.4, "{amplitude}: {mean} of {brightest}");
         }
+    });
+}
+
+/// Some rows alone, whatever other rows before them have left.
+#[test]
+fn densities_are_counted_in_the_rows_that_are_drawn() {
+    gpu_test(|device| {
+        let parameters = Parameters { steps: 8, ..parameters(vec![gases()[0]]) };
+        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let mut gas = Gas::new(&shaders, "test", Variant::None, &parameters, &[], None).unwrap();
+        let mut recorder = Recorder::new(device).unwrap();
+        let mut count = |rows: Range<u32>| {
+            gas.keep_rows(rows);
+            loop {
+                recorder.run(Mode::Plain, |frame| gas.record(frame, 0)).unwrap();
+                if gas.settle(&shaders).unwrap() {
+                    break;
+                }
+            }
+            gas.evaluations(&shaders).unwrap().expect("all rows are one band")
+        };
+        let all = count(0..HEIGHT);
+        let (upper, lower) = (count(0..HEIGHT / 2), count(HEIGHT / 2..HEIGHT));
+        assert!(upper > 0 && lower > 0 && upper + lower == all, "{upper} and {lower} of {all}");
     });
 }

@@ -73,6 +73,8 @@ pub const MOST_SECTIONS: usize = 512;
 const MOST_JOINTS: usize = 1024;
 /// Joints of a section at most: a thread visits them in every round of a search.
 const MOST_AROUND: usize = 128;
+/// Rounds of the search from the ground on (`burning/bending.comp`): what is deeper counts as held from two sides.
+const ROUNDS: usize = 128;
 /// Length of a section from the side of its foot to the other, diagonals; at least [`EDGES`] mean edges.
 const WIDTH: f64 = 0.04;
 const EDGES: f64 = 1.5;
@@ -108,7 +110,8 @@ impl Sections {
             let most = divided.sections.windows(2).map(|pair| (pair[1].first - pair[0].first) as usize).max();
             let is_small = divided.sections.len() <= MOST_SECTIONS + 1
                 && divided.joints.len() <= MOST_JOINTS
-                && most.unwrap_or(0) <= MOST_AROUND;
+                && most.unwrap_or(0) <= MOST_AROUND
+                && divided.depth(&distances) < ROUNDS;
             // Beyond every distance there is one section for each part of the mesh, and there are no joints.
             if is_small {
                 return divided;
@@ -118,6 +121,34 @@ impl Sections {
             }
             width *= 1.5;
         }
+    }
+
+    /// Joints between the ground and the section that is the most of them away from it. A piece without a foot, which may come
+    /// to lie on the ground, counts from where it is lowest.
+    fn depth(&self, distances: &[f64]) -> usize {
+        let mut is_found = vec![false; self.sections.len() - 1];
+        let mut open = VecDeque::new();
+        for (hold, _) in self.holds.iter().zip(distances).filter(|(_, distance)| **distance == 0.0) {
+            let section = (hold.sections & 0xffff) as usize;
+            if !is_found[section] {
+                is_found[section] = true;
+                open.push_back((section, 0));
+            }
+        }
+        let mut deepest = 0;
+        while let Some((at, depth)) = open.pop_front() {
+            deepest = depth;
+            let joints = self.sections[at].first as usize..self.sections[at + 1].first as usize;
+            for &joint in &self.around[joints] {
+                let [a, b] = self.joints[joint as usize].ends.map(|end| end as usize);
+                let other = if a == at { b } else { a };
+                if !is_found[other] {
+                    is_found[other] = true;
+                    open.push_back((other, depth + 1));
+                }
+            }
+        }
+        deepest
     }
 
     /// One section, of a mesh in more parts than there may be sections: nothing bends.
@@ -380,5 +411,18 @@ mod tests {
             assert!(joint.ends.iter().all(|end| own.contains(end)), "{own:?} {:?}", joint.ends);
         }
         assert!(divided.holds.iter().all(|hold| (0.0..=0.5).contains(&hold.share)));
+    }
+
+    #[test]
+    fn a_long_chain_is_no_deeper_than_a_search_goes() {
+        // A band of 500 rows of two vertices: 250 sections of the least width.
+        let row = |i: u32| [0.0, 0.02].map(|x| Vec3::new(x, 0.02 * i as f32, 0.0));
+        let positions: Vec<Vec3> = (0..500).flat_map(row).collect();
+        let square = |i: u32| [[2 * i, 2 * i + 1, 2 * i + 2], [2 * i + 2, 2 * i + 1, 2 * i + 3]];
+        let triangles: Vec<[u32; 3]> = (0..499).flat_map(square).collect();
+        let divided = Sections::new(&positions, &triangles, &[], 0.02);
+        let count = divided.sections.len() - 1;
+        assert_eq!(divided.joints.len(), count - 1);
+        assert!(count > ROUNDS / 2 && count <= ROUNDS, "{count}");
     }
 }

@@ -150,7 +150,7 @@ impl Reading {
                 .cost(Cost::Buffers)
                 .requires("volume-file"),
             Parameter::new("volume-unfit", field!(Reading.unfit))
-                .help("Of files: what a value does that is no density, which NaN is, infinity, and without a range what is negative")
+                .help("Of files: how to treat NaN, infinity and, without a range, negative values")
                 .cost(Cost::Buffers)
                 .requires("volume-file"),
             Parameter::new("volume-component", field!(Reading.component))

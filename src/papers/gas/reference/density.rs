@@ -84,7 +84,7 @@ impl Medium {
                 let first = p + DVec3::X * self.noise(p);
                 let second = first + DVec3::Y * self.noise(first);
                 let wave = (self.turbulence(second) * f64::from(frequency)).sin();
-                let transparency = 1.0 - ((wave + 1.0) / 2.0).powf(power);
+                let transparency = 1.0 - ((wave + 1.0) / 2.0).max(0.0).powf(power);
                 opaque * (1.0 - transparency)
             }
             DensityFunction::Fog { swirl, front } => {
