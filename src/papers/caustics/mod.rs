@@ -26,6 +26,7 @@ mod hidden_surfaces;
 mod hit_map;
 mod illumination_volumes;
 mod intersections;
+mod landing;
 #[cfg(test)]
 mod layouts;
 mod level_map;
@@ -82,6 +83,7 @@ use self::volumetric::Volumetric;
 use self::water::Grid;
 use self::water_surface::{VERTEX_FLOATS, WaterSurface};
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
+use crate::measure::parameter::Given;
 use crate::measure::{Paper, Target};
 use crate::scene::{Bounds, Camera};
 
@@ -101,6 +103,8 @@ pub const DRAWN: [&str; 5] = ["absorption", "camera", "fresnel", "samples", "tim
 pub struct Caustics {
     parameters: Parameters,
     variant: Variant,
+    /// Names of the parameters that a user gave.
+    given: Given,
     water_surface: WaterSurface,
     /// One for each light.
     illumination_volumes: Vec<IlluminationVolumes>,
@@ -196,6 +200,7 @@ impl Caustics {
         Ok(Caustics {
             parameters,
             variant,
+            given: Given::default(),
             water_surface,
             illumination_volumes,
             lit_receivers,
@@ -205,6 +210,12 @@ impl Caustics {
             view,
             is_viewed: false,
         })
+    }
+
+    /// The same, of parameters of which a user gave those: what the variant does not heed of them is warned of.
+    pub fn given(mut self, given: Given) -> Self {
+        self.given = given;
+        self
     }
 
     /// Sets the numbers of [`DRAWN`] of the next frames; all others are those that it was made with. False where the camera

@@ -36,6 +36,10 @@ const GAP_M: f32 = 0.3;
 const FLOOR_CELLS: u32 = 8;
 /// Side of the pool's floor in receivers.
 const FLOOR_SIZE: f32 = 3.0;
+/// Distance of the pool's floor below the receivers' feet, metres.
+const FLOOR_GAP_M: f32 = 1e-3 * RECEIVER_SIZE_M;
+/// A far plane beyond which numbers in single precision tell nothing apart any more.
+const FARTHEST_M: f64 = 1e9;
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -62,6 +66,8 @@ pub struct Setup {
     pub water_map_range_m: Option<f32>,
     /// Side of the water that the picture is taken from.
     pub view: View,
+    /// Names of the parameters that were given.
+    pub given: Given,
 }
 
 /// Place of the camera.
@@ -108,6 +114,7 @@ impl Default for Setup {
             water_map_spacing_m: None,
             water_map_range_m: None,
             view: View::Above,
+            given: Given::default(),
         }
     }
 }
@@ -176,7 +183,8 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Caustics, gpu::Error> {
-        Caustics::new(shaders, label, variant, &self.parameters, &scene.receivers)
+        let paper = Caustics::new(shaders, label, variant, &self.parameters, &scene.receivers)?;
+        Ok(paper.given(self.given.clone()))
     }
 
     fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
@@ -330,6 +338,7 @@ impl Study for Setup {
     }
 
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        self.given = given.clone();
         let p = &mut self.parameters;
         if p.smart.placement == SmartPlacement::Kept && given.has("epsilon") {
             let message = "`epsilon`: `smart-placement` kept keeps the uniform planes; leave one of them out";
@@ -347,15 +356,41 @@ impl Study for Setup {
         if !lights.is_empty() {
             p.lights = lights;
         }
+        let receivers = receivers_within(self.meshes.len(), self.floor, p.water_depth_m);
         p.camera = match self.view {
             View::Above => Parameters::camera_above(p.water_depth_m),
             View::Below => Parameters::camera_below(p.water_depth_m),
             View::At(EyeAndTarget { eye, target }) => {
-                Camera { eye, target, ..Parameters::camera_above(p.water_depth_m) }
+                let camera = Camera { eye, target, ..Parameters::camera_above(p.water_depth_m) };
+                reaching(camera, &receivers)
             }
         };
         Ok(())
     }
+}
+
+/// A box that holds so many receivers, whatever their shapes, and the pool's floor where it is one.
+fn receivers_within(meshes: usize, has_floor: bool, depth_m: f32) -> Bounds {
+    let width = meshes as f32 * (RECEIVER_SIZE_M + GAP_M) - GAP_M;
+    let extent = Vec2::new(width, RECEIVER_SIZE_M);
+    let half = if has_floor { floor_size(extent) } else { extent } / 2.0;
+    let min = Vec3::new(-half.x, -depth_m - FLOOR_GAP_M, -half.y);
+    Bounds { min, max: Vec3::new(half.x, RECEIVER_SIZE_M - depth_m, half.y) }
+}
+
+/// The camera with a far plane behind all `receivers`, and where that moves it a near plane that leaves the depth between them its
+/// precision.
+fn reaching(camera: Camera, receivers: &Bounds) -> Camera {
+    let eye = camera.eye.as_dvec3();
+    let (min, max) = (receivers.min.as_dvec3(), receivers.max.as_dvec3());
+    let farthest_m = (eye - min).abs().max((eye - max).abs()).length();
+    let nearest_m = eye.distance(eye.clamp(min, max));
+    let far_m = (2.0 * farthest_m).min(FARTHEST_M);
+    if far_m <= f64::from(camera.far_m) {
+        return camera;
+    }
+    let near_m = (nearest_m / 2.0).min(far_m / 4.0).max(f64::from(camera.near_m));
+    Camera { near_m: near_m as f32, far_m: far_m as f32, ..camera }
 }
 
 /// Water by a height map: its heights as they are, metres about the water's level, or scaled so that they span `range_m`
@@ -393,11 +428,16 @@ fn map_value(map: &WaterMap) -> Json {
 
 fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
     let bounds = receivers.iter().map(|r| r.mesh.bounds()).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
-    let size = Vec2::splat(FLOOR_SIZE * RECEIVER_SIZE_M).max(Vec2::new(bounds.diagonal().x, bounds.diagonal().z) * 1.6);
+    let size = floor_size(Vec2::new(bounds.diagonal().x, bounds.diagonal().z));
     let mesh = shapes::plane(size, UVec2::splat(FLOOR_CELLS));
     // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
-    let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
+    let place = Mat4::from_translation(Vec3::new(0.0, floor_m - FLOOR_GAP_M, 0.0));
     ReceiverInput { mesh: mesh.placed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
+}
+
+/// Sides along x and z of the pool's floor below receivers of that extent, metres.
+fn floor_size(receivers: Vec2) -> Vec2 {
+    Vec2::splat(FLOOR_SIZE * RECEIVER_SIZE_M).max(receivers * 1.6)
 }
 
 /// The thesis's meshes that we have, a scanned one, and a modelled one from `assets/` where that folder is.
@@ -405,4 +445,36 @@ pub fn sample_meshes() -> Vec<MeshSource> {
     let wuson = Some(PathBuf::from("assets/meshes/wuson.stl")).filter(|path| path.is_file());
     let built_in = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
     built_in.into_iter().chain(wuson.map(MeshSource::File)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen_from(eye: Vec3, floor: bool) -> Camera {
+        let view = View::At(EyeAndTarget { eye, target: Vec3::NEG_Y });
+        let mut setup = Setup { view, floor, meshes: vec![MeshSource::Box; 3], ..Setup::default() };
+        setup.resolve(&Given::default()).unwrap();
+        setup.parameters.camera
+    }
+
+    #[test]
+    fn a_camera_far_away_has_all_receivers_between_its_planes() {
+        let usual = Parameters::camera_above(Parameters::default().water_depth_m);
+        for floor in [false, true] {
+            let setup = Setup { floor, meshes: vec![MeshSource::Box; 3], ..Setup::default() };
+            let scene = setup.load().unwrap();
+            let points: Vec<Vec3> = scene.receivers.iter().flat_map(|r| r.mesh.positions.iter().copied()).collect();
+            for eye in [Vec3::new(0.0, 300.0, 1.0), Vec3::new(-2000.0, 1500.0, 800.0), Vec3::new(0.0, 1e8, 0.0)] {
+                let camera = seen_from(eye, floor);
+                camera.validate().unwrap();
+                let distances = points.iter().map(|point| point.distance(eye));
+                let farthest_m = distances.clone().fold(0.0, f32::max);
+                assert!(camera.far_m > 1.99 * farthest_m, "{eye}: {camera:?}");
+                assert!(distances.fold(f32::INFINITY, f32::min) > camera.near_m, "{eye}: {camera:?}");
+            }
+        }
+        let near = seen_from(Vec3::new(4.0, 3.0, 5.0), true);
+        assert_eq!((near.near_m, near.far_m), (usual.near_m, usual.far_m));
+    }
 }

@@ -2,10 +2,12 @@
 //! sampling does not show as it is.
 
 use super::Caustics;
-use super::parameters::{CullSteps, IntensityRule, Parameters, Variant};
+use super::landing::moved_by_slope;
+use super::parameters::{CullSteps, IntensityRule, Parameters, SmartPlacement, Variant};
 use super::receiver::LitReceiver;
 use super::water::LEVEL_M;
 use crate::measure::Variant as _;
+use crate::measure::parameter::Given;
 
 /// By which the landing of light moves from one metre of the water's surface to the next, root of the mean square, above which point
 /// sampling is warned of. Neighbouring rays meet where it reaches 1, which waves of many phases do in places at 2.5 standard
@@ -17,7 +19,7 @@ const AVERAGED: u32 = 4;
 impl Caustics {
     /// A line for each doubt.
     pub(super) fn doubts(&self) -> Vec<String> {
-        let unheeded = unheeded(&self.parameters, self.variant);
+        let unheeded = unheeded(&self.parameters, &self.given, self.variant);
         self.small_map().into_iter().chain(self.folded_light()).chain(unheeded).collect()
     }
 
@@ -61,22 +63,12 @@ impl Caustics {
     }
 }
 
-/// By which the place where light lands a metre down moves for each unit of the water's slope, root of the mean square over slopes'
-/// directions; the light's refracted ray runs down by `cos_refracted`. By Snell's law a slope turns it by 1 - cos i / (n cos t) along
-/// its own plane and across it, of which a slanted ray lands 1 / cos^2 t farther along, and 1 - 1/n from overhead both ways.
-fn moved_by_slope(cos_refracted: f64, refraction_index: f64) -> f64 {
-    let sin_incident = refraction_index * (1.0 - cos_refracted * cos_refracted).max(0.0).sqrt();
-    let cos_incident = (1.0 - sin_incident * sin_incident).max(0.0).sqrt();
-    let across = 1.0 - cos_incident / (refraction_index * cos_refracted);
-    let along = across / (cos_refracted * cos_refracted);
-    // A wave whose crests lie anyhow moves light by its curvature's parts along and across.
-    ((3.0 * along * along + 3.0 * across * across + 2.0 * along * across) / 8.0).sqrt()
-}
-
-/// Options are set that the variant does not heed.
-fn unheeded(p: &Parameters, variant: Variant) -> Option<String> {
-    use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil};
+/// Options are set that the variant does not heed. Numbers that every configuration has, and that experiments set for all variants,
+/// count where a user gave them.
+fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
+    use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil, Volumetric};
     let is_sampled = !matches!(variant, Hit | Stencil);
+    let is_smart = variant == LevelMapSmart || variant == Culled && p.culled_smart;
     let goes_by_distance = variant == LevelMap || variant == Culled && !p.culled_smart;
     // Each with whether it is set, and whether it is heeded.
     let options = [
@@ -87,6 +79,12 @@ fn unheeded(p: &Parameters, variant: Variant) -> Option<String> {
         ("intensity", p.intensity != IntensityRule::Face, is_sampled),
         ("planes-within", p.planes_within_m.is_some(), goes_by_distance),
         ("shadows", p.shadows, variant != Stencil),
+        ("planes", given.has("planes"), is_sampled),
+        ("map-size", given.has("map-size"), variant != Stencil),
+        ("mrt", given.has("mrt"), !matches!(variant, Volumetric | Stencil)),
+        ("levels", given.has("levels"), is_smart && p.smart.placement != SmartPlacement::Kept),
+        ("smart-placement", given.has("smart-placement"), is_smart),
+        ("epsilon", given.has("epsilon"), is_smart),
     ];
     let idle = options.into_iter().filter(|&(_, is_set, is_heeded)| is_set && !is_heeded);
     let names: Vec<String> = idle.map(|(name, ..)| format!("`{name}`")).collect();
@@ -95,32 +93,33 @@ fn unheeded(p: &Parameters, variant: Variant) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
-    use glam::{DVec2, DVec3};
-
-    use super::super::reference::refract;
     use super::*;
 
-    /// Against the oracle's refraction at surfaces that are tilted a little, all around.
     #[test]
-    fn landings_move_as_refracted_rays_do() {
-        for tilt in [0.0, 0.4, 0.9, 1.3_f64] {
-            let incident = DVec3::new(tilt.sin(), -tilt.cos(), 0.0);
-            let landing = |slope: DVec2| {
-                let ray = refract(incident, DVec3::new(-slope.x, 1.0, -slope.y).normalize(), 1.0, 1.333).unwrap();
-                DVec2::new(ray.x, ray.z) / -ray.y
-            };
-            // The divergence of what a wave along each direction does, which is what brings neighbouring rays together.
-            let moved = |i: u32| {
-                let direction = DVec2::from_angle(TAU * f64::from(i) / 360.0);
-                ((landing(1e-5 * direction) - landing(-1e-5 * direction)) / 2e-5).dot(direction)
-            };
-            let expected = ((0..360).map(|i| moved(i).powi(2)).sum::<f64>() / 360.0).sqrt();
-            let down = -refract(incident, DVec3::Y, 1.0, 1.333).unwrap().y;
-            let found = moved_by_slope(down, 1.333);
-            assert!((found / expected - 1.0).abs() < 1e-6, "{tilt}: {found} {expected}");
+    fn given_options_that_a_variant_does_not_heed_are_named() {
+        use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil, Volumetric};
+        let plain = Parameters::default();
+        let smart = Parameters { culled_smart: true, ..plain.clone() };
+        let mut kept = plain.clone();
+        kept.smart.placement = SmartPlacement::Kept;
+        for (parameters, options, variant, names) in [
+            (&kept, "planes levels smart-placement", Hit, "`planes`, `levels`, `smart-placement`"),
+            (&plain, "planes levels epsilon", LevelMapSmart, ""),
+            (&kept, "planes levels", LevelMapSmart, "`levels`"),
+            (&plain, "planes levels epsilon", LevelMap, "`levels`, `epsilon`"),
+            (&plain, "levels", Culled, "`levels`"),
+            (&smart, "planes levels epsilon", Culled, ""),
+            (&plain, "map-size mrt planes", Stencil, "`planes`, `map-size`, `mrt`"),
+            (&plain, "map-size mrt planes", Volumetric, "`mrt`"),
+            (&plain, "map-size mrt", Hit, ""),
+            // Not given, they are the experiments' own.
+            (&Parameters { planes: 3, map_size: 64, mrt: false, ..plain.clone() }, "", Stencil, ""),
+        ] {
+            let given = options.split_whitespace().map(str::to_owned).collect();
+            let found = unheeded(parameters, &given, variant).unwrap_or_default();
+            let expected =
+                if names.is_empty() { String::new() } else { format!("{} does not heed {names}", variant.as_str()) };
+            assert_eq!(found, expected, "{options}, {variant:?}");
         }
-        assert!((moved_by_slope(1.0, 4.0 / 3.0) - 0.25).abs() < 1e-12);
     }
 }

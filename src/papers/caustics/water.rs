@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::bounding_box::ReceiverBox;
+use super::landing::{along_and_across, moved_by_slope};
 use super::parameters::Parameters;
 use super::water_map::WaterMap;
 use crate::scene::Light;
@@ -14,6 +15,8 @@ use crate::scene::random::Random;
 pub const LEVEL_M: f64 = 0.0;
 /// The fraction of a footprint's extent that the mesh reaches beyond it on every side.
 const MARGIN: f64 = 0.1;
+/// Slopes of the sum of many waves above which there is hardly any, in roots of their mean square.
+const SELDOM: f64 = 2.0;
 const GRAVITY_M_S2: f64 = 9.81;
 /// Along a cell's side, in refined water.
 const MOST_PARTS: f64 = 8.0;
@@ -66,6 +69,29 @@ impl Parameters {
         self.water_map.as_ref().map_or_else(|| mean_derivative(self, 2), WaterMap::mean_curvature)
     }
 
+    /// A slope that the water hardly exceeds anywhere.
+    fn likely_slope(&self) -> f64 {
+        let of_waves = || {
+            let sum: f64 = waves(self).iter().map(|wave| wave.amplitude_m * wave.vector.length()).sum();
+            // The crests of many waves hardly ever meet.
+            sum.min(SELDOM * self.mean_slope())
+        };
+        self.water_map.as_ref().map_or_else(of_waves, |map| f64::from(map.steepest_slope()))
+    }
+
+    /// Height above or below the water's level that the water does not leave, metres.
+    fn rise_m(&self) -> f64 {
+        self.water_map.as_ref().map_or(f64::from(self.waves.amplitude_m), |map| {
+            let (low_m, high_m) = map.range_m();
+            f64::from(low_m.abs().max(high_m.abs()))
+        })
+    }
+
+    /// Reach of the entry into this water.
+    fn reach(&self) -> Reach {
+        Reach { index: f64::from(self.refraction_index), slope: self.likely_slope(), rise_m: self.rise_m() }
+    }
+
     /// Shortest length in metres over which the water repeats, or that a map of it resolves.
     pub fn shortest_wave_m(&self) -> f64 {
         let of_waves = || waves(self).iter().map(|w| TAU / w.vector.length()).fold(f64::INFINITY, f64::min);
@@ -78,6 +104,29 @@ impl Parameters {
 fn mean_derivative(parameters: &Parameters, order: i32) -> f64 {
     let square = |wave: &Wave| (wave.amplitude_m * wave.vector.length().powi(order)).powi(2) / 2.0;
     waves(parameters).iter().map(square).sum::<f64>().sqrt()
+}
+
+/// Water that light enters beside the place where it would enter it flat.
+struct Reach {
+    /// Refraction index.
+    index: f64,
+    /// A slope that is hardly exceeded.
+    slope: f64,
+    /// Greatest height above or below the level, metres.
+    rise_m: f64,
+}
+
+impl Reach {
+    /// Most distance between the two places, metres, for light to a target `depth_m` down whose ray in flat water runs down by
+    /// `cos_refracted`.
+    fn to(&self, cos_refracted: f64, depth_m: f64) -> f64 {
+        // Light that grazes the water is refracted to the latter.
+        let cos2 = (cos_refracted * cos_refracted).max(1.0 - 1.0 / (self.index * self.index));
+        let (along, _) = along_and_across(cos2.sqrt(), self.index);
+        // No ray is turned by much more than a radian.
+        let moved = (along * self.slope).min(1.0 / cos2);
+        self.rise_m * ((1.0 - cos2).max(0.0) / cos2).sqrt() + moved * (depth_m + self.rise_m).max(0.0)
+    }
 }
 
 /// The regular mesh: where it lies and how many cells it has along x and z; each cell is two triangles.
@@ -98,13 +147,19 @@ impl Grid {
     /// x 100 cells), over the footprint of `boxes` under `light`s and a margin.
     pub fn over(boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (mut least, mut most) = (low, high);
         let mut deepest = LEVEL_M;
+        let reach = parameters.reach();
         for (receiver, light) in boxes {
             for corner in receiver.corners() {
                 let place = entry_point(light, corner, receiver, f64::from(parameters.refraction_index));
                 low = low.min(place);
                 high = high.max(place);
                 deepest = deepest.min(corner.y);
+                let cos_refracted = cos_refracted(light, corner, receiver, place);
+                let reach = DVec2::splat(reach.to(cos_refracted, LEVEL_M - corner.y));
+                least = least.min(place - reach);
+                most = most.max(place + reach);
             }
         }
         // A wave of slope s deviates a ray by about s (1 - 1/n), and moves the edge of the footprint by as much.
@@ -116,20 +171,24 @@ impl Grid {
             let (low_m, high_m) = map.range_m();
             margin += DVec2::splat(f64::from(low_m.abs().max(high_m.abs())));
         }
-        let (low, high) = (low - margin, high + margin);
+        // Slanted light enters farther away, through water that leans or lies above its level.
+        let (low, high) = ((low - margin).min(least), (high + margin).max(most));
         let (columns, rows) = cells(parameters.water_triangles);
         let cell = (high - low) / DVec2::new(f64::from(columns), f64::from(rows));
         Grid { corner: low, cell, columns, rows }
     }
 
-    /// The same mesh with cells divided along each side until linear triangles show the light to a quarter of a texel or
-    /// so, and none is longer than eight texels or so; by eight along a side at most (section 6.3).
+    /// The same mesh with cells divided along each side until linear triangles show light from overhead to a quarter of a texel or
+    /// so, slanted light to half of one, and none is longer than eight texels or so; by eight along a side at most (section 6.3).
     pub fn refined(self, boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
         let texel_m = |b: &ReceiverBox| (b.extent.x * b.extent.z).sqrt() / f64::from(parameters.map_size);
         let texel_m = boxes.iter().map(|(b, _)| texel_m(b)).fold(f64::INFINITY, f64::min);
         let depth_m = boxes.iter().flat_map(|(b, _)| b.corners()).map(|p| LEVEL_M - p.y).fold(0.0, f64::max);
-        // A ray is turned by (1 - 1/n) of the slope; between vertices it strays by an eighth of its second derivative.
-        let turn = parameters.mean_slope() * (1.0 - 1.0 / f64::from(parameters.refraction_index));
+        // From overhead a ray is turned by (1 - 1/n) of the slope; between vertices it strays by an eighth of its second
+        // derivative.
+        let index = f64::from(parameters.refraction_index);
+        let slanted = boxes.iter().map(|(b, _)| moved_by_slope(b.axes.v.y, index)).fold(0.0, f64::max);
+        let turn = parameters.mean_slope() * (1.0 - 1.0 / index).max(slanted / 2.0);
         let bend = turn * (TAU / parameters.shortest_wave_m()).powi(2) * depth_m;
         let strays = if bend > 0.0 { (2.0 * texel_m / bend).sqrt() } else { f64::INFINITY };
         let finest_m = strays.min(LONGEST_TEXELS * texel_m).max(f64::MIN_POSITIVE);
@@ -207,9 +266,96 @@ fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_
     }
 }
 
+/// Cosine of the angle to the vertical at which light runs down from its `entry` into flat water to `target`.
+fn cos_refracted(light: &Light, target: DVec3, receiver: &ReceiverBox, entry: DVec2) -> f64 {
+    let depth_m = LEVEL_M - target.y;
+    match light {
+        Light::Parallel { .. } => receiver.axes.v.y,
+        Light::Point { .. } if depth_m > 0.0 => depth_m / depth_m.hypot(entry.distance(DVec2::new(target.x, target.z))),
+        // Light to what lies above the level passes no water.
+        Light::Point { .. } => 1.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
+    use super::super::bounding_box::Axes;
+    use super::super::parameters::WaveParameters;
+    use super::super::reference::refract;
     use super::*;
+
+    /// Boxes of a floor of 2 x 2 m, 3 m down, under light from `direction`.
+    fn floor_under(direction: Vec3) -> [(ReceiverBox, Light); 1] {
+        let light = Light::Parallel { direction, intensity: Vec3::ONE };
+        let points = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, z)| Vec3::new(x, -3.0, z));
+        let axes = Axes::aligned_with(&light, DVec3::NEG_Y * 3.0, 4.0 / 3.0);
+        [(ReceiverBox::around(axes, &points), light)]
+    }
+
+    const SLANTED: Vec3 = Vec3::new(1.0, -0.5, 0.0);
+
+    /// Rays through every place of a swell that is wider than the mesh, and through small waves: those that the floor receives enter
+    /// through the mesh.
+    #[test]
+    fn the_mesh_holds_all_water_that_lights_the_receivers() {
+        let swell = WaveParameters { count: 3, amplitude_m: 4.0, wavelength_m: 200.0 };
+        let small = WaveParameters { count: 12, amplitude_m: 0.05, wavelength_m: 1.2 };
+        let grazing = Vec3::new(1.0, -0.1, 0.3);
+        for (wave_parameters, direction) in [swell, small].into_iter().flat_map(|w| [(w, SLANTED), (w, grazing)]) {
+            for seed in 1..=6 {
+                let parameters = Parameters { seed, waves: wave_parameters, ..Parameters::default() };
+                let grid = Grid::over(&floor_under(direction), &parameters);
+                let (low, high) = (grid.corner, grid.corner + grid.extent_m());
+                let waves = waves(&parameters);
+                let incident = direction.as_dvec3().normalize();
+                let (mut lit, mut outside) = (0, 0);
+                for place in (0..160_000).map(|i| DVec2::new(f64::from(i % 400), f64::from(i / 400)) * 0.1 - 20.0) {
+                    let (mut height, mut slope) = (LEVEL_M, DVec2::ZERO);
+                    for wave in &waves {
+                        let (sine, cosine) = (wave.vector.dot(place) + wave.phase_rad).sin_cos();
+                        height += wave.amplitude_m * sine;
+                        slope += wave.vector * (wave.amplitude_m * cosine);
+                    }
+                    let normal = DVec3::new(-slope.x, 1.0, -slope.y).normalize();
+                    let Some(ray) = refract(incident, normal, 1.0, 4.0 / 3.0).filter(|ray| ray.y < 0.0) else {
+                        continue;
+                    };
+                    let landing = place + DVec2::new(ray.x, ray.z) * ((height + 3.0) / -ray.y);
+                    if incident.dot(normal) < 0.0 && landing.abs().max_element() <= 1.0 {
+                        lit += 1;
+                        outside += u32::from(place.cmplt(low).any() || place.cmpgt(high).any());
+                    }
+                }
+                assert!(
+                    lit > 50 && f64::from(outside) < 0.002 * f64::from(lit),
+                    "{direction}, seed {seed}: {outside} of {lit}"
+                );
+            }
+        }
+    }
+
+    /// Light from overhead has the mesh that it always had: the footprint, a tenth of it, and what the steepest slope moves a ray by.
+    #[test]
+    fn under_overhead_light_the_mesh_has_its_plain_margin() {
+        let parameters = Parameters::default();
+        let grid = Grid::over(&floor_under(Vec3::NEG_Y), &parameters);
+        let margin = 0.2 + 0.25 * f64::from(parameters.steepest_slope()) * 3.0;
+        assert!((grid.extent_m() - (2.0 + 2.0 * margin)).abs().max_element() < 0.01, "{grid:?}");
+    }
+
+    #[test]
+    fn slanted_light_strays_by_half_a_texel_at_most() {
+        let parameters = Parameters { water_triangles: 1000, map_size: 128, ..Parameters::default() };
+        let boxes = floor_under(SLANTED);
+        let cell_m = Grid::over(&boxes, &parameters).refined(&boxes, &parameters).cell.max_element();
+        let (ReceiverBox { axes, extent, .. }, _) = boxes[0];
+        let texel_m = (extent.x * extent.z).sqrt() / 128.0;
+        let turn = parameters.mean_slope() * moved_by_slope(axes.v.y, 4.0 / 3.0);
+        let strays_m = turn * 3.0 * (TAU / parameters.shortest_wave_m() * cell_m).powi(2) / 8.0;
+        assert!(strays_m < 0.55 * texel_m, "{strays_m} of {texel_m}");
+    }
 
     /// Refined cells are divided alike, since there would be hardly fewer if each were divided by what its own water bends the light
     /// between its vertices, as the root of it along each side.

@@ -176,7 +176,7 @@ fn faces_turned_away_pass_nothing() {
         let low_sun = Light::Parallel { direction: Vec3::new(1.0, -0.27, 0.2), intensity: Vec3::ONE };
         let low_lamp = Light::Point { position: Vec3::new(-9.0, 1.8, 1.0), intensity: Vec3::ONE };
         for light in [low_sun, low_lamp] {
-            let parameters = Parameters { waves, water_triangles: 600, ..parameters(light) };
+            let parameters = Parameters { waves, water_triangles: 1400, ..parameters(light) };
             let receiver = tilted_plane();
             let drawing = Drawing::of(device, Variant::LevelMap, &parameters, from_ref(&receiver));
             let oracle = Oracle::of(&parameters, &light, &receiver, &drawing.grid);

@@ -82,6 +82,7 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
+            .range(Range::from(1.0).to(4096.0))
             .help("Plane counts of a sweep, comma-separated")
             .default_text("3,11,31,101"),
         Parameter::new("step", field!(Options.step))
