@@ -72,6 +72,7 @@ use self::sph::surface_temperature::SurfaceTemperature;
 use self::targets::Context;
 use crate::gpu::transfer::read_image;
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::measure::parameter::Given;
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
@@ -130,6 +131,8 @@ pub const DRAWN: [&str; 11] = [
 /// The paper with its resources.
 pub struct Lava {
     parameters: Parameters,
+    /// Parameters that a user gave, of which those that do nothing are warned of.
+    given: Given,
     variant: Variant,
     /// The particles' textures.
     pub animate: Animate,
@@ -241,7 +244,7 @@ impl Paper for Lava {
 
     fn warnings(&self) -> Vec<String> {
         let mut warnings = [&self.view_warnings[..], &self.buried].concat();
-        warnings.extend(warnings::unheeded(&self.parameters, self.variant));
+        warnings.extend(warnings::unheeded(&self.parameters, &self.given, self.variant));
         if self.lacks_geometry_stage {
             warnings.push(
                 "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
@@ -370,6 +373,7 @@ impl Lava {
         let parameters = parameters.clone();
         Ok(Lava {
             parameters,
+            given: Given::default(),
             variant,
             animate,
             method,
@@ -387,6 +391,12 @@ impl Lava {
             lacks_geometry_stage,
             repeats: false,
         })
+    }
+
+    /// The same, of parameters of which a user gave those: what the variant does not heed of them is warned of.
+    pub fn given(mut self, given: Given) -> Self {
+        self.given = given;
+        self
     }
 
     /// Sets the numbers of [`DRAWN`] of the next frames; `rock` and `objects` are those that it was made with, and so are

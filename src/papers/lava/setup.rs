@@ -43,6 +43,8 @@ pub struct Setup {
     pub crease_deg: f32,
     /// Name of the preset or experiment that they come from.
     pub preset: Option<String>,
+    /// Names of the parameters that were given.
+    pub given: Given,
 }
 
 impl Default for Setup {
@@ -54,6 +56,7 @@ impl Default for Setup {
             objects: Vec::new(),
             crease_deg: CREASE_DEG,
             preset: None,
+            given: Given::default(),
         }
     }
 }
@@ -154,7 +157,8 @@ impl Study for Setup {
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Lava, gpu::Error> {
-        Lava::new(shaders, label, variant, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
+        let (p, Scene { particles, rock, objects }) = (&self.parameters, scene);
+        Ok(Lava::new(shaders, label, variant, p, particles, rock, objects)?.given(self.given.clone()))
     }
 
     fn reconfigure(&self, scene: &Scene, paper: &mut Lava, changed: &Given) -> Result<bool, Error> {
@@ -312,6 +316,11 @@ impl Study for Setup {
 
     fn preset_mut(&mut self) -> &mut Option<String> {
         &mut self.preset
+    }
+
+    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        self.given = given.clone();
+        Ok(())
     }
 }
 

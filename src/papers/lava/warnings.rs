@@ -1,66 +1,56 @@
 //! Surprises of a configuration that a user is warned of: options of splats where rays draw the surface.
 
 use super::parameters::{Parameters, SurfaceDraw, Variant};
-use super::setup::Setup;
 use crate::measure::Variant as _;
-use crate::measure::study::Study;
+use crate::measure::parameter::Given;
 
 /// Parameters of splats, which rays do not heed.
 const OF_SPLATS: [&str; 5] = ["splats", "splat-radius", "splat-shape", "splat-shading", "culling"];
 /// Of stages two and three, and of none where densities are gathered too.
 const OF_PRIMITIVES: &str = "geometry-stage";
 
-/// A line on options that are set and not heeded. What a preset sets as well is no surprise.
-pub(super) fn unheeded(p: &Parameters, variant: Variant) -> Option<String> {
+/// A line on options that a user gave and that are not heeded.
+pub(super) fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
     if p.surface_draw(variant) != SurfaceDraw::March {
         return None;
     }
-    let known: Vec<Parameters> = [Parameters::default()]
-        .into_iter()
-        .chain(Setup::presets().iter().map(|preset| (preset.setup)().parameters))
-        .collect();
-    let is_idle = |name: &str| OF_SPLATS.contains(&name) || variant == Variant::GpuDriven && name == OF_PRIMITIVES;
-    let options = Parameters::declared().into_iter().filter(|option| is_idle(option.name));
-    let given = options.filter(|option| known.iter().all(|known| option.text(known) != option.text(p)));
-    let names: Vec<String> = given.map(|option| format!("`{}`", option.name)).collect();
+    let of_primitives = (variant == Variant::GpuDriven).then_some(OF_PRIMITIVES);
+    let idle = OF_SPLATS.into_iter().chain(of_primitives).filter(|name| given.has(name));
+    let names: Vec<String> = idle.map(|name| format!("`{name}`")).collect();
     (!names.is_empty()).then(|| format!("{} draws by rays, which do not heed {}", variant.as_str(), names.join(", ")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::papers::lava::{SplatCulling, SplatShape};
 
     #[test]
     fn options_of_splats_that_rays_do_not_heed_are_named() {
-        let plain = Parameters::default();
-        let discs = Parameters { splats: [61, 37], splat_radius_m: 0.05, ..plain.clone() };
-        let others = Parameters {
-            splat_shape: SplatShape::Fitted,
-            culling: SplatCulling::Facing,
-            geometry_stage: false,
-            ..plain.clone()
-        };
-        let rays = |p: &Parameters| Parameters { surface_draw: Some(SurfaceDraw::March), ..p.clone() };
-        let splats = |p: &Parameters| Parameters { surface_draw: Some(SurfaceDraw::Splats), ..p.clone() };
+        use SurfaceDraw::{March, Splats};
         use Variant::{GpuDriven, Paper};
-        for (parameters, variant, names) in [
-            (plain.clone(), GpuDriven, None),
-            (discs.clone(), Paper, None),
-            (discs.clone(), GpuDriven, Some("gpu-driven draws by rays, which do not heed `splats`, `splat-radius`")),
-            (splats(&discs), GpuDriven, None),
-            (rays(&discs), Paper, Some("paper draws by rays, which do not heed `splats`, `splat-radius`")),
-            (rays(&others), Paper, Some("paper draws by rays, which do not heed `splat-shape`, `culling`")),
-            (
-                others,
-                GpuDriven,
-                Some("gpu-driven draws by rays, which do not heed `splat-shape`, `culling`, `geometry-stage`"),
-            ),
+        for (surface_draw, variant, options, names) in [
+            (None, GpuDriven, "particles", ""),
+            (None, Paper, "splats splat-radius", ""),
+            (None, GpuDriven, "splat-radius splats", "`splats`, `splat-radius`"),
+            (Some(Splats), GpuDriven, "splats", ""),
+            (Some(March), Paper, "splats splat-radius", "`splats`, `splat-radius`"),
+            (Some(March), Paper, "splat-shape culling geometry-stage", "`splat-shape`, `culling`"),
+            (None, GpuDriven, "splat-shading culling geometry-stage", "`splat-shading`, `culling`, `geometry-stage`"),
+            // A preset's own values are no surprise.
+            (Some(March), Paper, "", ""),
         ] {
-            assert_eq!(unheeded(&parameters, variant).as_deref(), names, "{variant:?}");
+            let parameters = Parameters { surface_draw, ..Parameters::default() };
+            let given = options.split_whitespace().map(str::to_owned).collect();
+            let found = unheeded(&parameters, &given, variant).unwrap_or_default();
+            let draws = format!("{} draws by rays, which do not heed {names}", variant.as_str());
+            assert_eq!(found, if names.is_empty() { String::new() } else { draws }, "{options}, {variant:?}");
         }
-        for preset in Setup::presets() {
-            assert_eq!(unheeded(&(preset.setup)().parameters, GpuDriven), None, "{}", preset.name);
+    }
+
+    #[test]
+    fn every_name_is_an_option() {
+        for name in OF_SPLATS.into_iter().chain([OF_PRIMITIVES]) {
+            assert!(Parameters::declared().iter().any(|option| option.name == name), "{name}");
         }
     }
 }

@@ -206,13 +206,19 @@ fn the_host_reads_in_the_middle_of_a_frame() {
     });
 }
 
+/// Two pictures of 4 x 4 texels, and the passes `first` and `second` that clear and paint one each.
+fn two_paints(device: &Arc<Device>) -> ([Arc<ImageView>; 2], [Pass; 2]) {
+    let shaders = shaders(device);
+    let targets = ["a", "b"].map(|name| color_target(device, name, vk::Format::R32_SFLOAT, 4, 4));
+    let passes =
+        [("first", 0), ("second", 1)].map(|(name, at)| paint_pass(&shaders, name, &targets[at], BLACK, Blend::Replace));
+    (targets, passes)
+}
+
 #[test]
 fn work_that_is_parted_is_waited_for_by_no_pass() {
     gpu_test(|device| {
-        let shaders = shaders(device);
-        let targets = ["a", "b"].map(|name| color_target(device, name, vk::Format::R32_SFLOAT, 4, 4));
-        let passes = [("first", 0), ("second", 1)]
-            .map(|(name, at)| paint_pass(&shaders, name, &targets[at], BLACK, Blend::Replace));
+        let (targets, passes) = two_paints(device);
         for mode in [Mode::Plain, Mode::Bracketed, Mode::Timestamped, Mode::Counted] {
             let sample = run(device, mode, |frame| {
                 for (pass, value) in [(&passes[0], 1.0), (&passes[1], 2.0), (&passes[1], 3.0)] {
@@ -238,10 +244,7 @@ fn work_that_is_parted_is_waited_for_by_no_pass() {
 #[test]
 fn passes_that_are_submitted_one_by_one_draw_the_same() {
     gpu_test(|device| {
-        let shaders = shaders(device);
-        let targets = ["a", "b"].map(|name| color_target(device, name, vk::Format::R32_SFLOAT, 4, 4));
-        let passes = [("first", 0), ("second", 1)]
-            .map(|(name, at)| paint_pass(&shaders, name, &targets[at], BLACK, Blend::Replace));
+        let (targets, passes) = two_paints(device);
         let mut recorder = Recorder::new(device).unwrap();
         for (is_wanted, mode, submissions) in [
             (true, Mode::Plain, [0, 1]),

@@ -24,7 +24,8 @@ use crate::cli::program::{Ended, Running, device, fumarole};
 
 /// Far above what anything here takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
-const LOOK: Duration = Duration::from_millis(20);
+/// Between two looks, and between two events of one hand.
+pub const LOOK: Duration = Duration::from_millis(20);
 
 /// X events of the test extension.
 const KEY_PRESS: u8 = 2;

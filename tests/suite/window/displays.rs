@@ -4,12 +4,13 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::thread;
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt, Window as WindowId};
 
-use super::display::{Display, controls, wait};
+use super::display::{Display, LOOK, controls, wait};
 use super::scene::small;
 use crate::cli::program::{device, fumarole};
 use crate::common::beside_others;
@@ -22,6 +23,8 @@ const RIGHT: &str = "name=X2\nmode=400x300\nscale=2";
 /// A place that the window covers wherever the compositor has put it on the left display, and one on the right.
 const ON_LEFT: (i16, i16) = (400, 300);
 const ON_RIGHT: (i16, i16) = (1050, 300);
+/// Below both displays.
+const OUTSIDE: (i16, i16) = (800, 900);
 
 /// The compositor, ended when dropped.
 struct Compositor(Child);
@@ -89,6 +92,9 @@ fn a_window_is_carried_to_a_display_of_another_scale() {
                 |text: &str| controls(&path).iter().any(|one| one["value"].as_str().unwrap_or("").contains(text));
             height().filter(|_| is_there("frame 0 in "))
         });
+        // The compositor goes by the pointer's steps from where it last came in, which it may have missed while it started.
+        display.point(OUTSIDE);
+        thread::sleep(LOOK);
         display.carry(SUPER, ON_LEFT, ON_RIGHT);
         wait("text twice as large", || {
             assert!(!program.has_ended(), "the window has ended");
