@@ -49,5 +49,8 @@ void main() {
     vec3 place = bent(vertex, rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz));
     vec3 position = turned(parts[part].orientation, place) + parts[part].offset;
     uint layer = parts[part].rests != 0.0 ? 0u : 1u + part % 2u;
-    atomicMin(balls[entry_of(layer, cell_at(position))], vertex);
+    ivec3 cell = cell_at(position);
+    atomicMin(balls[entry_of(layer, cell)], vertex);
+    atomicMin(balls[entry_of(LOWEST_PART, cell >> LARGER)], part);
+    atomicMin(balls[entry_of(HIGHEST_PART, cell >> LARGER)], ~part);
 }

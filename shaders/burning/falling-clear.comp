@@ -24,7 +24,7 @@ void main() {
             contacts[i] = i % WORDS < DIRECTIONS ? -FARTHEST : FARTHEST;
         }
         if (i < ENTRIES) {
-            for (uint layer = 0u; layer < LAYERS; layer++) {
+            for (uint layer = 0u; layer < LAYERS + 2u; layer++) {
                 balls[layer * ENTRIES + i] = 0xffffffffu;
             }
         }

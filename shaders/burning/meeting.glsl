@@ -1,8 +1,13 @@
 // Where a part that falls meets another: vertices as balls. A table by a hash of a vertex's cell holds the lowest vertex
 // there, in layers: of what lies still, and of what falls of parts of even and of odd numbers, so that a part's own balls
-// hide few of the others'.
+// hide few of the others'. Two layers more hold the lowest and the highest part in each larger cell: most balls are among
+// those of their own part alone, and look no further.
 
 #include "burning/contacts.glsl"
+
+const uint LOWEST_PART = LAYERS;
+const uint HIGHEST_PART = LAYERS + 1u; // the highest as ~part, so that it is a lowest number too
+const int LARGER = 2; // doublings of a cell's sides
 
 const uint MEETINGS = 8u; // the deepest in each octant of directions
 

@@ -13,10 +13,10 @@ use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 
 /// Words of a part's contacts (`burning/contacts.glsl`).
 const WORDS: u32 = 48;
-/// Entries of a layer of the table of vertices, its layers, bytes of what is met, and meetings of a part
+/// Entries of a layer of the table of vertices, its layers with those of parts, bytes of what is met, and meetings of a part
 /// (`burning/meeting.glsl`).
 const ENTRIES: u32 = 65536;
-const LAYERS: u32 = 3;
+const LAYERS: u32 = 5;
 const OBSTACLE: u32 = 32;
 const MEETINGS: u32 = 8;
 

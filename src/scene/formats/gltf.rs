@@ -76,7 +76,7 @@ pub(super) fn promised_triangles(stream: &mut Stream<'_>) -> Result<Option<u64>,
 /// Triangles of a document's scene; none where a list of them is not in its buffer, or where there are more than the reader takes.
 fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
     check_objects(text)?;
-    let (document, _) = read_document(text)?;
+    let document = read_document(text)?;
     let is_there = |accessor: &::gltf::Accessor<'_>| {
         accessor.view().is_some_and(|view| {
             let is_elsewhere = matches!(view.buffer().source(), ::gltf::buffer::Source::Uri(_));
@@ -105,9 +105,9 @@ fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
 }
 
 fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Fault> {
-    check_container(bytes)?;
-    check_objects(bytes)?;
-    let (document, chunk) = read_document(bytes)?;
+    let (text, chunk) = open_container(bytes)?;
+    check_objects(&text)?;
+    let document = read_document(&text)?;
     let buffers = Buffers::read(&document, chunk, directory)?;
     let meshes = placed_meshes(&document)?;
     let is_drawn = |part: &Primitive| matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
@@ -171,15 +171,10 @@ fn check_container(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 /// Refuses a document whose objects would take far more memory than its text.
-fn check_objects(bytes: &[u8]) -> Result<(), Fault> {
+fn check_objects(text: &[u8]) -> Result<(), Fault> {
     /// As many bytes of memory for each of the file, and as many more.
     const PER_BYTE: usize = 16;
     const SPARE: usize = 64 << 20;
-    let text = match bytes.strip_prefix(b"glTF").and_then(|rest| rest.get(8..12)?.try_into().ok()) {
-        Some(length) => bytes[12..].get(8..).unwrap_or_default().get(..u32::from_le_bytes(length) as usize),
-        None => Some(bytes),
-    };
-    let text = text.unwrap_or_default();
     let count = text.iter().filter(|byte| **byte == b'{').count();
     if count * OBJECT_BYTES > PER_BYTE * text.len() + SPARE {
         let reason = format!("its {} bytes of JSON hold {count} objects, too many for that size", text.len());
@@ -227,21 +222,29 @@ fn is_version_1(bytes: &[u8]) -> bool {
         .is_ok_and(|root: Root| root.asset.version.to_string().trim_matches('"').starts_with('1'))
 }
 
-/// A document and the binary chunk beside it.
-type WithChunk<'a> = (Document, Option<Cow<'a, [u8]>>);
+/// The text of a document, and the binary chunk beside it.
+type WithChunk<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
 
-fn read_document(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
-    let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
-    let (text, chunk) = if bytes.starts_with(b"glTF") {
-        let file = Glb::from_slice(bytes).map_err(foreign)?;
-        (file.json, file.bin)
-    } else {
-        (Cow::Borrowed(bytes), None)
-    };
+/// Text and chunk of a binary file; any other is text itself.
+fn open_container(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((Cow::Borrowed(bytes), None));
+    }
+    check_container(bytes)?;
+    let file = Glb::from_slice(bytes).map_err(foreign)?;
+    Ok((file.json, file.bin))
+}
+
+fn foreign(error: ::gltf::Error) -> Fault {
+    Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"))
+}
+
+/// The document of a text, which is no container, even where it begins like one.
+fn read_document(text: &[u8]) -> Result<Document, Fault> {
     // Not by the library's reader of files, which takes text that begins like a binary file for another.
-    let json = json::deserialize::from_slice::<json::Root>(&text).map_err(|error| {
+    let json = json::deserialize::from_slice::<json::Root>(text).map_err(|error| {
         let reason = "it is glTF 1.0, whose meshes are written otherwise; convert it to 2.0";
-        if is_version_1(&text) { Fault::new(Place::Whole, reason) } else { foreign(error.into()) }
+        if is_version_1(text) { Fault::new(Place::Whole, reason) } else { foreign(error.into()) }
     })?;
     // The validation that follows looks at the accessor of the positions before it looks whether
     // there is one.
@@ -253,7 +256,7 @@ fn read_document(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
             return Err(Fault::new(Place::Part(format!("mesh {number}")), reason));
         }
     }
-    Ok((Document::from_json(json).map_err(foreign)?, chunk))
+    Document::from_json(json).map_err(foreign)
 }
 
 /// The meshes of the scene's nodes with their transforms to the world.
