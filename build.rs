@@ -62,12 +62,12 @@ fn describe_build() {
 /// Writes each binary to a file of its own and the table that includes them: as lists of numbers in Rust they would take the
 /// compiler ten times as long as their reading.
 fn embed_shaders() -> Result<(), String> {
-    let shaders = compile_dir(Path::new("shaders")).map_err(|error| error.to_string())?;
+    let shaders = compile_dir(Path::new("shaders"), &[]).map_err(|error| error.to_string())?;
     check_exceptions(&shaders, NAGA_EXCEPTIONS).map_err(|error| error.to_string())?;
     let folder = env::var_os("OUT_DIR").ok_or("cargo sets no OUT_DIR; build with cargo")?;
     let folder = Path::new(&folder);
     let (mut binaries, mut table) = (String::new(), String::new());
-    for (index, CompiledShader { name, stage, glslang, naga }) in shaders.iter().enumerate() {
+    for (index, CompiledShader { name, stage, text_sha256, glslang, naga }) in shaders.iter().enumerate() {
         binaries += &embed(folder, &format!("GLSLANG_{index}"), glslang)?;
         let naga = match naga {
             Ok(words) => {
@@ -78,7 +78,8 @@ fn embed_shaders() -> Result<(), String> {
         };
         let _infallible = writeln!(
             table,
-            "EmbeddedShader {{ name: {name:?}, stage: Stage::{stage:?}, glslang: &GLSLANG_{index}, naga: {naga} }},"
+            "EmbeddedShader {{ name: {name:?}, stage: Stage::{stage:?}, text_sha256: {text_sha256:?}, glslang: &GLSLANG_{index}, \
+             naga: {naga} }},"
         );
     }
     let table = format!(

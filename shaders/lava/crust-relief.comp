@@ -191,7 +191,8 @@ Piece piece_at(vec3 place_m) {
 const uint NO_TOE = 0xffffffffu;
 
 // 1 inside a toe, 0 on the seam between two: of the lava around a place by the kernel, what the toe that has most of it has more than the one
-// that has most beside it, over what both have. They are among the three toes whose particles lie nearest.
+// that has most beside it, over what both have. Of the three toes whose particles lie nearest: one that lies farther away is left out, even if it
+// has more than they do.
 float seam_at(vec3 place_m) {
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
     int highest = int(flow.counts.y) - 1;

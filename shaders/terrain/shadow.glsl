@@ -8,7 +8,8 @@ float lit_at(ivec2 pixel) {
     read_map();
     vec4 hit = texelFetch(depth, pixel, 0);
     float before = texelFetch(prior, min(pixel, textureSize(prior, 0) - 1), 0).x;
-    if ((int(hit.w) & 7) == SKY) {
+    // What a map before darkens stays dark, even if the ray at this one did not come to its end.
+    if ((int(hit.w) & 7) == SKY || before == 0.0) {
         return before;
     }
     shadow_shift = min((int(hit.w) >> 3) & 31, map.top);

@@ -70,7 +70,9 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let page = arguments.report.clone().map(|page| page.unwrap_or_else(|| output.out.join("report.html")));
     page.iter().try_for_each(|page| outcome::check_file(page))?;
 
-    papers::each(&mut Pictures { folder: &output.out })?;
+    let mut pictures = Pictures { folder: &output.out, files: Vec::new() };
+    papers::each(&mut pictures)?;
+    outcome::check_apart(output.files().chain(&page).chain(&pictures.files), &[])?;
 
     // Every paper runs on one device, so that their figures compare.
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
@@ -99,13 +101,18 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
 /// Checks before the long work that the pictures can be written.
 struct Pictures<'a> {
     folder: &'a Path,
+    /// Those of the papers so far.
+    files: Vec<PathBuf>,
 }
 
 impl Visitor for Pictures<'_> {
     type Error = Failure;
 
     fn visit<S: Study>(&mut self) -> Result<(), Failure> {
-        pictures::<S>(self.folder).iter().try_for_each(|picture| outcome::check_file(picture))
+        let files = pictures::<S>(self.folder);
+        files.iter().try_for_each(|picture| outcome::check_file(picture))?;
+        self.files.extend(files);
+        Ok(())
     }
 }
 

@@ -54,7 +54,7 @@ pub struct VerdictArgs {
     markdown: bool,
     /// Write the comparison; to standard output without a file
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
+    pub(super) json: Option<PathBuf>,
 }
 
 /// The records of one side.

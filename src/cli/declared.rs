@@ -390,6 +390,7 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
         doubts: Doubts::default(),
     };
     *context.setup.preset_mut() = Some(experiment.name.to_owned());
+    outcome::check_apart(&[context.json_file(), context.csv_file()], &outcome::read_by(&context.setup))?;
     Ok(context.run(experiment)?)
 }
 

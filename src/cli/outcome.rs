@@ -90,10 +90,10 @@ pub fn check(output: &OutputArgs) -> Result<(), Failure> {
 }
 
 /// Fails where two of the files that are `written` are one, or one of them is `read`: the one would take the other's place
-/// without a word.
+/// without a word. Fails as well where one would lie below another, which is a file and holds none.
 pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[PathBuf]) -> Result<(), Failure> {
     let read: Vec<PathBuf> = read.iter().filter_map(|path| destination(path)).collect();
-    let mut before = Vec::new();
+    let mut before: Vec<(&PathBuf, PathBuf)> = Vec::new();
     for path in written {
         let Some(place) = destination(path) else { continue };
         if read.contains(&place) {
@@ -101,12 +101,25 @@ pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[P
                 format!("{}: it is read, and what is written there would replace it; name another", path.display());
             return Err(Failure::Input(message));
         }
-        if before.contains(&place) {
-            let message =
-                format!("{}: two outputs are to be written there; give each a file of its own", path.display());
+        for (other, other_place) in &before {
+            let (above, below) = match (place.starts_with(other_place), other_place.starts_with(&place)) {
+                (false, false) => continue,
+                (true, true) => {
+                    let message =
+                        format!("{}: two outputs are to be written there; give each a file of its own", path.display());
+                    return Err(Failure::Input(message));
+                }
+                (true, false) => (*other, path),
+                (false, true) => (path, *other),
+            };
+            let message = format!(
+                "{}: one output is to be written there, and another below it, {}; a file has none below it, so name another",
+                above.display(),
+                below.display()
+            );
             return Err(Failure::Input(message));
         }
-        before.push(place);
+        before.push((path, place));
     }
     Ok(())
 }

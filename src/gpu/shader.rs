@@ -123,7 +123,7 @@ fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
 
 /// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.
 fn replace(dir: &Path) -> Result<Vec<shader_build::CompiledShader>, String> {
-    let shaders = shader_build::compile_dir(dir).map_err(|e| e.to_string())?;
+    let shaders = shader_build::compile_dir(dir, EMBEDDED).map_err(|e| e.to_string())?;
     if shaders.iter().any(|s| EMBEDDED.iter().any(|built_in| built_in.name == s.name)) {
         Ok(shaders)
     } else {

@@ -465,11 +465,13 @@ impl<S: Study> Context<'_, S> {
         self.destinations.json.as_deref().is_some_and(|path| path.as_os_str() == "-")
     }
 
-    pub(super) fn json_file(&self) -> PathBuf {
+    /// File of the record.
+    pub fn json_file(&self) -> PathBuf {
         self.destinations.json.clone().filter(|_| !self.is_json_printed()).unwrap_or_else(|| self.own_file(".json"))
     }
 
-    fn csv_file(&self) -> PathBuf {
+    /// File of the record's rows.
+    pub fn csv_file(&self) -> PathBuf {
         self.destinations.csv.clone().unwrap_or_else(|| self.own_file(".csv"))
     }
 

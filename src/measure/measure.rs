@@ -1,13 +1,13 @@
 //! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, timestamped and bracketed in
-//! turn, the papers interleaved frame by frame so that drift hits all alike, and so that of several none is always measured
-//! behind the same other.
+//! turn, the papers interleaved frame by frame so that drift hits all alike. Of three and more the order changes from round to
+//! round, and goes on changing from repetition to repetition, so that over some rounds none stands behind the same other alone.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::statistics::median;
-use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, PassKind, Recorder, Span, Work};
+use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, PassKind, PassSample, Recorder, Span, Work};
 use crate::measure::{self, Paper};
 
 /// Frames and repetitions to measure.
@@ -40,7 +40,7 @@ pub struct FrameSpan {
     pub frame: u32,
     /// Start of the frame's recording in milliseconds from the start of the measurement, common to all papers.
     pub frame_start_ms: f64,
-    /// The pass and its time within the frame.
+    /// The pass, as an index into [`Measurement::passes`], and its time within the frame.
     pub span: Span,
 }
 
@@ -88,7 +88,7 @@ pub struct Measurement {
     pub bracket_ms: Vec<f64>,
     /// In the order of recording.
     pub passes: Vec<MeasuredPass>,
-    /// Milliseconds of the first frame less the median of the plain ones, at least 0: what first use costs.
+    /// Milliseconds of the first frame less the median of the plain ones of its number, at least 0: what first use costs.
     pub first_frame_ms: f64,
     /// The spans of time in the measured frames, as long as there are fewer than [`MOST_SPANS`].
     pub spans: Vec<FrameSpan>,
@@ -125,14 +125,16 @@ pub fn measure(
     let mut results = vec![Measurement::default(); papers.len()];
     take_frames(recorder, papers, schedule, watch, &mut results)?;
     for result in &mut results {
-        result.first_frame_ms = beyond_median_ms(result.first_frame_ms, &result.frame_ms);
+        result.first_frame_ms = first_use_ms(result.first_frame_ms, &result.frame_ms, schedule.frames);
     }
     Ok(results)
 }
 
-/// Time of the first frame beyond what an ordinary one takes, which is nothing where there is none.
-fn beyond_median_ms(first_ms: f64, others_ms: &[f64]) -> f64 {
-    (first_ms - median(others_ms).unwrap_or(0.0)).max(0.0)
+/// Time of the first frame beyond what the plain frames of its number take, of `frames` in each repetition; all of it where
+/// there are none. Later frames may do other work than the first.
+fn first_use_ms(first_ms: f64, plain_ms: &[f64], frames: u32) -> f64 {
+    let same: Vec<f64> = plain_ms.iter().copied().step_by(frames.max(1) as usize).collect();
+    (first_ms - median(&same).unwrap_or(0.0)).max(0.0)
 }
 
 /// The loop itself, until all is measured or the user wants no more.
@@ -180,22 +182,19 @@ fn take_frames(
         for mode in MODES {
             restart(papers)?;
             for number in 0..schedule.frames {
+                let round = u64::from(repetition) * u64::from(schedule.frames) + u64::from(number);
                 for place in 0..papers.len() {
                     if stopped() {
                         return Ok(());
                     }
-                    let at = turn(papers.len(), number, place);
+                    let at = turn(papers.len(), round, place);
                     let (paper, result) = (&mut papers[at], &mut results[at]);
                     let frame_start_ms = origin.elapsed().as_secs_f64() * 1e3;
                     let sample = recorder.run_unless(watch.interrupted, mode, |frame| paper.record(frame, number));
                     let Some(sample) = finished(sample)? else { return Ok(()) };
                     result.take(mode, number, sample);
-                    if result.spans.len() + sample.spans.len() < MOST_SPANS {
-                        let of_frame = |&span| FrameSpan { mode, repetition, frame: number, frame_start_ms, span };
-                        result.spans.extend(sample.spans.iter().map(of_frame));
-                    } else {
-                        result.frames_without_spans += 1;
-                    }
+                    let of_frame = |span| FrameSpan { mode, repetition, frame: number, frame_start_ms, span };
+                    result.take_spans(sample, of_frame);
                     tick(expected);
                 }
             }
@@ -218,17 +217,22 @@ fn take_frames(
     Ok(())
 }
 
-/// Index of the paper that stands in a place of a frame of that number. Of three and more, each frame begins with the next,
-/// and every other round of them runs backwards, so that none follows the same other throughout. The number alone decides:
-/// in all modes and repetitions a frame of one paper stands behind the same ones.
-fn turn(papers: usize, number: u32, place: usize) -> usize {
-    // Of two, each follows the other; were they turned about, each would follow itself in every other frame.
+/// Index of the paper that stands in a place of a round, which is a frame of every paper; rounds are numbered through all
+/// repetitions, and the same in all modes, whose frames are set against each other.
+///
+/// Of three and more, the first round goes from side to side, as 0, 1, 4, 2, 3, and each round has the next paper for every one
+/// of the round before: the steps from place to place differ, so that a paper that moves on comes behind another one. An odd
+/// number has only half of all steps, and runs backwards in odd rounds for the other half. Over as many rounds as there are
+/// papers, twice as many of an odd number, each has been behind each other one equally often within a round (Williams, 1949).
+fn turn(papers: usize, round: u64, place: usize) -> usize {
+    // Of two, each follows the other; were they turned about, each would follow itself in every other round.
     if papers < 3 {
         return place;
     }
-    let number = number as usize;
-    let forwards = (number + place) % papers;
-    if (number / papers).is_multiple_of(2) { forwards } else { (papers - forwards) % papers }
+    let is_backwards = !papers.is_multiple_of(2) && !round.is_multiple_of(2);
+    let place = if is_backwards { papers - 1 - place } else { place };
+    let from_side_to_side = if place.is_multiple_of(2) { papers - place / 2 } else { place.div_ceil(2) };
+    ((round % papers as u64) as usize + from_side_to_side) % papers
 }
 
 /// None of a frame that was given up half-way.
@@ -263,8 +267,14 @@ impl Measurement {
         median_of_told(frames.map(|((frame, gpu), host)| frame - gpu - host))
     }
 
-    fn pass(&mut self, sample: &crate::gpu::PassSample) -> &mut MeasuredPass {
-        let at = self.passes.iter().position(|p| p.info.name == sample.info.name).unwrap_or_else(|| {
+    fn pass(&mut self, sample: &PassSample) -> &mut MeasuredPass {
+        let place = self.place(sample);
+        &mut self.passes[place]
+    }
+
+    /// Index of the pass among those of all frames, to which it is added where it is new.
+    fn place(&mut self, sample: &PassSample) -> usize {
+        self.passes.iter().position(|p| p.info.name == sample.info.name).unwrap_or_else(|| {
             self.passes.push(MeasuredPass {
                 info: sample.info.clone(),
                 calls: sample.calls,
@@ -278,8 +288,19 @@ impl Measurement {
                 work: None,
             });
             self.passes.len() - 1
-        });
-        &mut self.passes[at]
+        })
+    }
+
+    /// Keeps the spans of a frame, if there is room for all of them.
+    fn take_spans(&mut self, sample: &FrameSample, of_frame: impl Fn(Span) -> FrameSpan) {
+        if self.spans.len() + sample.spans.len() >= MOST_SPANS {
+            self.frames_without_spans += 1;
+            return;
+        }
+        // Frames may differ in their passes: one stands elsewhere among all than among those of its frame.
+        let places: Vec<usize> = sample.passes.iter().map(|pass| self.place(pass)).collect();
+        let placed = |span: &Span| of_frame(Span { pass: span.pass.map(|pass| places[pass]), ..*span });
+        self.spans.extend(sample.spans.iter().map(placed));
     }
 
     fn take(&mut self, mode: Mode, frame: u32, sample: &FrameSample) {
@@ -321,7 +342,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::gpu::PassSample;
+    use crate::gpu::Track;
 
     fn pass(name: &'static str, kind: PassKind, ms: f64) -> PassSample {
         let is_host = kind == PassKind::Host;
@@ -370,28 +391,75 @@ mod tests {
         assert_eq!(measurement.frame_ms, [3.0]);
     }
 
+    /// A pass of the first frame alone comes before the others, whose first place in their frames is another among all.
     #[test]
-    fn first_use_costs_what_an_ordinary_frame_does_not() {
-        assert_eq!(beyond_median_ms(90.0, &[20.0, 40.0, 30.0]), 60.0);
-        assert_eq!(beyond_median_ms(10.0, &[20.0, 40.0, 30.0]), 0.0);
-        assert_eq!(beyond_median_ms(90.0, &[]), 90.0);
+    fn spans_name_the_passes_of_their_own_frames() {
+        let mut measurement = Measurement::default();
+        for frame in 0..2 {
+            let mut passes = vec![pass("plan", PassKind::Host, 0.5), pass("draw", PassKind::Graphics, 2.0)];
+            if frame == 0 {
+                passes.insert(0, pass("boundary", PassKind::Compute, 8.0));
+            }
+            let of_pass = |pass| Span { pass, start_ms: 0.0, duration_ms: 1.0, track: Track::Gpu };
+            let spans = (0..passes.len()).map(Some).chain([None]).map(of_pass).collect();
+            let sample = FrameSample { frame_ms: 9.0, bracket_ms: None, passes, spans };
+            measurement.take(Mode::Timestamped, frame, &sample);
+            let of_frame =
+                |span| FrameSpan { mode: Mode::Timestamped, repetition: 0, frame, frame_start_ms: 0.0, span };
+            measurement.take_spans(&sample, of_frame);
+        }
+        let name = |span: &FrameSpan| Some(measurement.passes[span.span.pass?].info.name);
+        let names: Vec<_> = measurement.spans.iter().map(name).collect();
+        let expected = [Some("boundary"), Some("plan"), Some("draw"), None, Some("plan"), Some("draw"), None];
+        assert_eq!(names, expected);
     }
 
     #[test]
-    fn papers_change_their_places_from_frame_to_frame() {
-        for papers in 1..=6 {
-            let frame = |number: u32| (0..papers).map(move |place| turn(papers, number, place));
-            let order: Vec<usize> = (0..4 * papers as u32).flat_map(frame).collect();
-            for frame in order.chunks(papers) {
-                let all: BTreeSet<usize> = frame.iter().copied().collect();
-                assert_eq!(all, (0..papers).collect::<BTreeSet<_>>(), "{papers}: each once");
+    fn first_use_costs_what_the_same_frame_does_not_cost_again() {
+        assert_eq!(first_use_ms(90.0, &[20.0, 40.0, 30.0], 1), 60.0);
+        assert_eq!(first_use_ms(10.0, &[20.0, 40.0, 30.0], 1), 0.0);
+        assert_eq!(first_use_ms(90.0, &[], 2), 90.0);
+        // Frames that grow, and a repetition that ends half-way.
+        assert_eq!(first_use_ms(90.0, &[20.0, 70.0, 200.0, 30.0, 80.0, 300.0, 40.0], 3), 60.0);
+    }
+
+    /// As the loop takes them: in every repetition each mode has the same rounds.
+    #[test]
+    fn none_stands_behind_the_same_other_alone() {
+        for (papers, frames) in (3..=9).flat_map(|papers| (1..=3).map(move |frames| (papers, frames))) {
+            let case = format!("{papers} papers, {frames} frames");
+            let rounds = (0..3).flat_map(|repetition| (0..frames).map(move |number| repetition * frames + number));
+            let rounds: Vec<Vec<usize>> =
+                rounds.map(|round| (0..papers).map(|place| turn(papers, round, place)).collect()).collect();
+            for round in &rounds {
+                let all: BTreeSet<usize> = round.iter().copied().collect();
+                assert_eq!(all, (0..papers).collect::<BTreeSet<_>>(), "{case}: each once");
             }
-            assert_eq!(order[..papers], (0..papers).collect::<Vec<_>>(), "the first frame is in the order of naming");
+            let modes = rounds.chunks(frames as usize).flat_map(|repetition| repetition.concat().repeat(3));
+            let order: Vec<usize> = modes.collect();
             for paper in 0..papers {
-                let pairs = order.windows(2).filter(|pair| pair[1] == paper);
+                let pairs = order.windows(2).filter(|pair| pair[1] == paper && pair[0] != paper);
                 let before: BTreeSet<usize> = pairs.map(|pair| pair[0]).collect();
-                assert!(papers == 1 || !before.contains(&paper), "{paper} of {papers} follows itself");
-                assert!(papers < 3 || before.len() > 1, "{paper} of {papers} follows {before:?} alone");
+                assert!(before.len() > 1, "{case}: {paper} follows {before:?} alone");
+            }
+        }
+    }
+
+    #[test]
+    fn each_stands_behind_each_other_one_equally_often() {
+        for papers in 1..=9 {
+            let count = if papers % 2 == 1 { 2 * papers } else { papers };
+            let rounds: Vec<Vec<usize>> =
+                (0..count as u64).map(|round| (0..papers).map(|place| turn(papers, round, place)).collect()).collect();
+            assert_eq!(turn(papers, 0, 0), 0, "the first round begins with the first");
+            let order = rounds.concat();
+            assert!(papers == 1 || order.windows(2).all(|pair| pair[0] != pair[1]), "{papers}: one follows itself");
+            if papers < 3 {
+                continue;
+            }
+            for pair in (0..papers * papers).map(|at| [at / papers, at % papers]).filter(|pair| pair[0] != pair[1]) {
+                let times = rounds.iter().flat_map(|round| round.windows(2)).filter(|two| *two == pair).count();
+                assert_eq!(times, count / papers, "{pair:?} of {papers}");
             }
         }
     }

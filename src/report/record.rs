@@ -193,7 +193,7 @@ pub struct Run {
     /// Times of the steps of loading mesh files; absent where none was loaded.
     #[serde(default)]
     pub loading: Option<Loading>,
-    /// Making of the resources and pipelines, and the first frame less the median of the others.
+    /// Making of the resources and pipelines, and the first frame less the median of the plain ones of its number.
     pub pipeline_ms: Option<f64>,
     /// Bytes that the variant's resources take.
     pub memory: Memory,

@@ -85,17 +85,25 @@ fn companions(path: &Path) -> Vec<PathBuf> {
         return beside.into_iter().find(|file| file.is_file()).into_iter().collect();
     }
     if ending == "vrt" {
-        return height_map::mosaic_parts(path);
+        // A part is no mosaic itself, and one that names another is refused: looking into that might have no end.
+        let is_mosaic = |part: &Path| part.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt"));
+        let of_part = |part: PathBuf| {
+            let others = if is_mosaic(&part) { Vec::new() } else { companions(&part) };
+            std::iter::once(part).chain(others)
+        };
+        return height_map::mosaic_parts(path).into_iter().flat_map(of_part).collect();
     }
     let samples = voxels::companions(path);
     if !samples.is_empty() {
         return samples;
     }
-    if !BESIDE_A_RASTER.iter().any(|known| ending == *known) {
-        return Vec::new();
-    }
+    let beside: &[&str] = match () {
+        () if ending == "asc" => &["prj"],
+        () if BESIDE_A_RASTER.iter().any(|known| ending == *known) => &BESIDE_A_RASTER,
+        () => &[],
+    };
     // One file of each ending but its own: some systems find it under either name.
-    let others = BESIDE_A_RASTER.iter().filter(|other| ending != **other);
+    let others = beside.iter().filter(|other| ending != **other);
     let spelled =
         |ending: &str| [ending.to_owned(), ending.to_ascii_uppercase()].map(|ending| path.with_extension(ending));
     others.filter_map(|other| spelled(other).into_iter().find(|file| file.is_file())).collect()
@@ -130,6 +138,11 @@ mod tests {
         assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
         write("d.pgw", "place");
         assert_ne!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
+        let grid = write("f.asc", "grid");
+        let alone = source_sha256(&grid).unwrap();
+        assert_eq!(alone, content::sha256(b"grid"));
+        write("f.prj", "projection");
+        assert_ne!(source_sha256(&grid).unwrap(), alone);
         let volume = write("e.nhdr", "NRRD0004\ndata file: e.raw\n");
         write("e.raw", "one");
         let first = source_sha256(&volume).unwrap();
@@ -137,6 +150,38 @@ mod tests {
         assert_ne!(source_sha256(&volume).unwrap(), first);
         write("c.obj", "mesh");
         assert_eq!(source_sha256(&folder.path().join("c.obj")).unwrap(), content::sha256(b"mesh"));
+    }
+
+    /// A part of a mosaic has companions of its own; a mosaic that names itself has an end.
+    #[test]
+    fn what_is_read_with_the_parts_of_a_mosaic_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let part = |name: &str| {
+            format!(
+                "<SimpleSource><SourceFilename relativeToVRT=\"1\">{name}</SourceFilename>\
+                 <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"2\" ySize=\"2\"/>\
+                 <DstRect xOff=\"0\" yOff=\"0\" xSize=\"2\" ySize=\"2\"/></SimpleSource>"
+            )
+        };
+        let parts = part("a.asc") + &part("b.bil") + &part("all.vrt");
+        write(
+            "all.vrt",
+            &format!(
+                "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Int16\" band=\"1\">\
+                 {parts}</VRTRasterBand></VRTDataset>"
+            ),
+        );
+        write("a.asc", "grid");
+        write("b.bil", "raster");
+        let path = folder.path().join("all.vrt");
+        let mut before = (source_sha256(&path).unwrap(), SourceState::of(&path).unwrap());
+        for name in ["a.prj", "b.hdr"] {
+            write(name, "beside");
+            let now = (source_sha256(&path).unwrap(), SourceState::of(&path).unwrap());
+            assert!(now.0 != before.0 && now.1 != before.1, "{name}");
+            before = now;
+        }
     }
 
     #[test]

@@ -93,6 +93,7 @@ mod tests {
         CompiledShader {
             name: name.to_owned(),
             stage,
+            text_sha256: [0; 32],
             glslang: Vec::new(),
             naga: accepted.then(Vec::new).ok_or_else(|| "atomics".to_owned()),
         }

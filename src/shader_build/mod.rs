@@ -1,7 +1,7 @@
 //! GLSL 4.50 to SPIR-V, 1.5 by glslang and 1.4 by naga: includes, line numbers, reflection.
 //!
 //! The build script compiles every shader with [`compile_dir`] and embeds the binaries as [`EMBEDDED`];
-//! `--shader-dir` calls the same function at run time. Layouts are built from the [`Interface`] of
+//! `--shader-dir` calls the same function at run time, and takes the binaries of the texts that it finds unchanged. Layouts are built from the [`Interface`] of
 //! glslang's binary; naga's has passed [`check_same_interface`] and fits them too.
 //!
 //! # Files
@@ -70,6 +70,8 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
+use sha2::{Digest, Sha256};
+
 pub use agreement::check_same_interface;
 #[cfg(embedded_shaders)]
 pub use embedded::EMBEDDED;
@@ -130,6 +132,8 @@ pub struct EmbeddedShader {
     pub name: &'static str,
     /// Stage by the file's extension.
     pub stage: Stage,
+    /// SHA-256 of the text that the compilers saw.
+    pub text_sha256: [u8; 32],
     /// SPIR-V words of glslang.
     pub glslang: &'static [u32],
     /// SPIR-V words of naga, or why there are none.
@@ -143,6 +147,8 @@ pub struct CompiledShader {
     pub name: String,
     /// Stage by the file's extension.
     pub stage: Stage,
+    /// SHA-256 of the text that the compilers saw.
+    pub text_sha256: [u8; 32],
     /// SPIR-V words of glslang.
     pub glslang: Vec<u32>,
     /// SPIR-V words of naga, or why there are none.
@@ -154,6 +160,7 @@ impl From<&EmbeddedShader> for CompiledShader {
         CompiledShader {
             name: embedded.name.to_owned(),
             stage: embedded.stage,
+            text_sha256: embedded.text_sha256,
             glslang: embedded.glslang.to_vec(),
             naga: embedded.naga.map(<[u32]>::to_vec).map_err(str::to_owned),
         }
@@ -183,14 +190,15 @@ impl Diagnostic {
     }
 }
 
-/// Compiles every shader below `root`, sorted by name. Files with other endings are left alone.
+/// Compiles every shader below `root`, sorted by name. Files with other endings are left alone. A shader whose text is that of
+/// one of its name in `known`, sorted by name and made by the same compilers, is taken from there: compiling all takes seconds.
 ///
 /// # Errors
 /// The first file that cannot be read, include that cannot be resolved, list of variants that is misspelt, name that
 /// two files make and shader that glslang refuses.
 /// A shader that naga refuses, or gives another interface, is no error here but the reason in
 /// [`CompiledShader::naga`], which [`check_exceptions`] judges.
-pub fn compile_dir(root: &Path) -> Result<Vec<CompiledShader>, Error> {
+pub fn compile_dir(root: &Path, known: &[EmbeddedShader]) -> Result<Vec<CompiledShader>, Error> {
     let mut files = Vec::new();
     list_files(root, "", &mut files)?;
     let mut sources = Vec::new();
@@ -203,7 +211,7 @@ pub fn compile_dir(root: &Path) -> Result<Vec<CompiledShader>, Error> {
         let files = [twice[0].1.clone(), twice[1].1.clone()];
         return Err(Error::MadeTwice { shader: twice[0].0.clone(), files });
     }
-    sources.iter().map(|(name, _, stage, source)| compile(name, *stage, source)).collect()
+    sources.iter().map(|(name, _, stage, source)| compile(name, *stage, source, known)).collect()
 }
 
 fn list_files(folder: &Path, prefix: &str, files: &mut Vec<(String, Stage)>) -> Result<(), Error> {
@@ -221,7 +229,13 @@ fn list_files(folder: &Path, prefix: &str, files: &mut Vec<(String, Stage)>) -> 
     Ok(())
 }
 
-fn compile(name: &str, stage: Stage, source: &Source) -> Result<CompiledShader, Error> {
+fn compile(name: &str, stage: Stage, source: &Source, known: &[EmbeddedShader]) -> Result<CompiledShader, Error> {
+    let text_sha256 = Sha256::digest(&source.text).into();
+    if let Ok(at) = known.binary_search_by(|known| known.name.cmp(name))
+        && known[at].text_sha256 == text_sha256
+    {
+        return Ok(CompiledShader::from(&known[at]));
+    }
     let glslang = glslang::compile(stage, &source.text)
         .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Glslang, source))?;
     let interface =
@@ -233,6 +247,7 @@ fn compile(name: &str, stage: Stage, source: &Source) -> Result<CompiledShader, 
     Ok(CompiledShader {
         name: name.to_owned(),
         stage,
+        text_sha256,
         glslang,
         naga: naga.map_err(|reason| listed.map_or(reason, |(_, listed)| (*listed).to_owned())),
     })

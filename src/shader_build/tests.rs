@@ -13,7 +13,7 @@ fn compile_pair(shader: &str, included: &str) -> Result<CompiledShader, Error> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.frag"), shader).unwrap();
     fs::write(folder.path().join("b.glsl"), included).unwrap();
-    compile_dir(folder.path()).map(|mut shaders| shaders.remove(0))
+    compile_dir(folder.path(), &[]).map(|mut shaders| shaders.remove(0))
 }
 
 fn compile_fragment(declarations: &str, body: &str) -> CompiledShader {
@@ -28,16 +28,43 @@ fn reflect_embedded(name: &str) -> Interface {
 
 #[test]
 fn the_embedded_shaders_are_those_of_the_folder() {
-    let compiled = compile_dir(Path::new(SHADERS)).unwrap();
+    let compiled = compile_dir(Path::new(SHADERS), &[]).unwrap();
     assert!(compiled.len() >= 10);
     assert_eq!(compiled.len(), EMBEDDED.len());
     for (compiled, embedded) in compiled.iter().zip(EMBEDDED) {
         assert_eq!(compiled.name, embedded.name);
         assert_eq!(compiled.stage, embedded.stage);
+        assert_eq!(compiled.text_sha256, embedded.text_sha256);
         assert_eq!(compiled.glslang, embedded.glslang);
         assert_eq!(compiled.naga.as_deref().ok(), embedded.naga.ok());
     }
     check_exceptions(&compiled, NAGA_EXCEPTIONS).unwrap();
+}
+
+#[test]
+fn what_is_unchanged_is_taken_and_all_else_compiled() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, color: &str| {
+        let text =
+            format!("#version 450\nlayout(location = 0) out vec4 color;\nvoid main() {{ color = vec4({color}); }}\n");
+        fs::write(folder.path().join(name), text).unwrap();
+    };
+    ["a.frag", "b.frag", "c.frag"].into_iter().for_each(|name| write(name, "1.0"));
+    let compiled = compile_dir(folder.path(), &[]).unwrap();
+    // Binaries that no compiler makes, by which they are known again.
+    let known = [&compiled[0], &compiled[2]].map(|shader| EmbeddedShader {
+        name: Box::leak(shader.name.clone().into_boxed_str()),
+        stage: shader.stage,
+        text_sha256: shader.text_sha256,
+        glslang: &[1],
+        naga: Err("known"),
+    });
+    write("c.frag", "0.5");
+    let again = compile_dir(folder.path(), &known).unwrap();
+    assert_eq!(again[0].glslang, [1]);
+    assert_eq!(again[0].naga.as_ref().unwrap_err(), "known");
+    assert_eq!(again[1].glslang, compiled[1].glslang);
+    assert!(again[2].glslang.len() > 1 && again[2].glslang != compiled[2].glslang, "its text is another");
 }
 
 #[test]
@@ -122,7 +149,7 @@ fn compile_variants(shader: &str) -> Result<Vec<CompiledShader>, Error> {
     fs::write(folder.path().join("a.frag"), shader).unwrap();
     fs::write(folder.path().join("b-red.glsl"), "float color() {\n    return 1.0;\n}\n").unwrap();
     fs::write(folder.path().join("b-blue.glsl"), "\nfloat color() {\n    return level;\n}\n").unwrap();
-    compile_dir(folder.path())
+    compile_dir(folder.path(), &[])
 }
 
 #[test]
@@ -158,7 +185,7 @@ fn a_name_that_two_files_make_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.comp"), "#version 450\n#pragma variants B=c\nvoid main() {}\n").unwrap();
     fs::write(folder.path().join("a-c.comp"), "#version 450\nvoid main() {}\n").unwrap();
-    let message = compile_dir(folder.path()).unwrap_err().to_string();
+    let message = compile_dir(folder.path(), &[]).unwrap_err().to_string();
     assert!(message.contains("both make the shader `a-c.comp`"), "{message}");
     assert!(message.contains("`a.comp`"), "{message}");
 }
@@ -327,7 +354,7 @@ fn what_is_no_spirv_is_refused() {
 
 #[test]
 fn a_missing_folder_is_named() {
-    let error = compile_dir(Path::new("no/such/folder")).unwrap_err();
+    let error = compile_dir(Path::new("no/such/folder"), &[]).unwrap_err();
     assert!(error.to_string().starts_with("reading no/such/folder: "), "{error}");
 }
 
@@ -341,7 +368,7 @@ fn what_a_workgroup_shares_is_counted_as_std430_lays_it_out() {
                 void main() { a = values[0]; b = vec3(a); c[1].place = b.xy; d = mat3(a);\n\
                 values[1] = d[0].x + b.x + c[2].place.x; }\n";
     fs::write(folder.path().join("a.comp"), text).unwrap();
-    let shader = compile_dir(folder.path()).unwrap().remove(0);
+    let shader = compile_dir(folder.path(), &[]).unwrap().remove(0);
     // b at 0, d's columns at 16, 32 and 48, pairs of 16 bytes from 64 on, a at 112.
     assert_eq!(Interface::reflect(&shader.glslang).unwrap().shared_bytes, 116);
     assert_eq!(reflect_embedded("test/sum.comp").shared_bytes, 4 * 64);

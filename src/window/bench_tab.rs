@@ -36,6 +36,11 @@ struct Running {
 
 impl Running {
     fn start(mut command: Command, path: PathBuf) -> io::Result<Self> {
+        // The record of one before would else be taken for that of one that fails.
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
         let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
         let mut running = Running { child, started: Instant::now(), path, last_line: None };
         if let Some(errors) = running.child.stderr.take() {
@@ -179,6 +184,21 @@ mod tests {
             bench.poll(&context);
         }
         assert_eq!(bench.problem.as_deref(), Some("benchmark: out of paper"));
+    }
+
+    #[test]
+    fn one_that_fails_shows_no_record_of_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        std::fs::write(&path, "{}").unwrap();
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", "exit 1"]);
+        let mut running = Running::start(command, path).unwrap();
+        running.child.wait().unwrap();
+        let mut bench = Bench::default();
+        bench.end(running, false);
+        assert_eq!(bench.record, None);
+        assert!(bench.problem.is_some());
     }
 
     #[test]

@@ -122,7 +122,8 @@ impl Screen {
 
     fn show(&mut self, tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>) -> Result<Drawn, Error> {
         // Of a window that changes while it is drawn to, the second picture is the right one; a display that never
-        // settles gets its next chance with the next frame.
+        // settles gets its next chance with the next frame. It took as long as all of its pictures.
+        let mut painted = Duration::ZERO;
         for _ in 0..3 {
             if self.is_stale {
                 self.make_swapchain()?;
@@ -139,7 +140,7 @@ impl Screen {
                     problem: "it has drawn nothing yet".into(),
                 })?,
             };
-            let painted = started.elapsed();
+            painted += started.elapsed();
             match swapchain.present(&picture)? {
                 Presented::Shown => {
                     self.shown = Some(picture);

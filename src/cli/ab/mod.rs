@@ -73,7 +73,10 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     arguments.check_arguments()?;
     let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
     let verdicts = arguments.out.join(VERDICTS_FILE);
-    files.iter().chain([&verdicts]).try_for_each(|path| file::check_writable(path))?;
+    let named = arguments.verdict.json.iter().filter(|path| path.as_os_str() != "-");
+    files.iter().chain([&verdicts]).chain(named.clone()).try_for_each(|path| file::check_writable(path))?;
+    // Verdicts that are named as the folder's own are the same.
+    outcome::check_apart(files.iter().chain(named), &[])?;
     let interrupted = interrupted();
     let own = arguments.own_blocks()?;
     let bar = progress_bar(arguments.quiet, "blocks A B B A");

@@ -298,8 +298,9 @@ fn a_swapchain_whose_presents_do_not_end_stays_with_its_surface() {
     assert!(images > 2, "{images}");
     let started = Instant::now();
     drop((made, surface));
-    // One second for all images together.
-    assert!(started.elapsed() < Duration::from_millis(2500), "{:?}", started.elapsed());
+    // One second for all images together, and not for each; clocks may differ a little.
+    let for_each = Duration::from_secs(images as u64) - Duration::from_millis(100);
+    assert!(started.elapsed() < for_each, "{:?} for {images} images", started.elapsed());
     let left = [Kind::Swapchain, Kind::Surface, Kind::CommandPool, Kind::Fence, Kind::Semaphore].map(count);
     assert_eq!(left, [1, 1, 0, images, images + 1]);
     assert_valid(&device);

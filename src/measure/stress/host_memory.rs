@@ -40,7 +40,11 @@ fn least_left(root: &Path, group: &str) -> Option<u64> {
 
 fn left_in(group: &Path) -> Option<u64> {
     let number = |name: &str| fs::read_to_string(group.join(name)).ok()?.trim().parse::<u64>().ok();
-    Some(number("memory.max")?.saturating_sub(number("memory.current")?))
+    // What the system gives back by itself before it kills for memory: files that were read long ago, and its own caches.
+    let account = fs::read_to_string(group.join("memory.stat")).unwrap_or_default();
+    let spare = ["inactive_file", "slab_reclaimable"].iter().filter_map(|name| counted(&account, name));
+    let taken = spare.fold(number("memory.current")?, u64::saturating_sub);
+    Some(number("memory.max")?.saturating_sub(taken))
 }
 
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
@@ -69,6 +73,13 @@ mod tests {
         assert_eq!(left_in(folder.path()), None);
         fs::write(folder.path().join("memory.max"), "350\n").unwrap();
         assert_eq!(left_in(folder.path()), Some(250));
+        // What can be given back is not lost.
+        let account = "inactive_file_of 7\nfile 90\ninactive_file 60\nslab_reclaimable 10\nslab 20\n";
+        fs::write(folder.path().join("memory.stat"), account).unwrap();
+        assert_eq!(left_in(folder.path()), Some(320));
+        // The accounts are not of one moment.
+        fs::write(folder.path().join("memory.stat"), "inactive_file 101\n").unwrap();
+        assert_eq!(left_in(folder.path()), Some(350));
     }
 
     #[test]

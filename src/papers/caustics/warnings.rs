@@ -5,7 +5,7 @@ use super::Caustics;
 use super::landing::moved_by_slope;
 use super::parameters::{CullSteps, IntensityRule, Parameters, SmartPlacement, Variant};
 use super::receiver::LitReceiver;
-use super::water::LEVEL_M;
+use super::water::{LEVEL_M, least_cosine};
 use crate::measure::Variant as _;
 use crate::measure::parameter::Given;
 
@@ -20,7 +20,8 @@ impl Caustics {
     /// A line for each doubt.
     pub(super) fn doubts(&self) -> Vec<String> {
         let unheeded = unheeded(&self.parameters, &self.given, self.variant);
-        self.small_map().into_iter().chain(self.folded_light()).chain(unheeded).collect()
+        let still = unheeded_by_map(&self.parameters, &self.given);
+        self.small_map().into_iter().chain(self.folded_light()).chain(unheeded).chain(still).collect()
     }
 
     /// The light that reaches the receivers passes water beyond the border of a height map.
@@ -50,7 +51,8 @@ impl Caustics {
         let index = f64::from(p.refraction_index);
         let bent = self.lit_receivers.iter().filter_map(|lit| {
             let depth_m = LEVEL_M - f64::from(deepest_m(lit)?);
-            Some((depth_m, p.mean_curvature() * moved_by_slope(lit.aligned.axes.v.y, index) * depth_m))
+            let most_slanted = least_cosine(&p.lights[lit.light], &lit.aligned, index);
+            Some((depth_m, p.mean_curvature() * moved_by_slope(most_slanted, index) * depth_m))
         });
         // None for the stencil method, which has no maps.
         let (depth_m, bend) = bent.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
@@ -69,6 +71,8 @@ fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
     use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil, Volumetric};
     let is_sampled = !matches!(variant, Hit | Stencil);
     let is_smart = variant == LevelMapSmart || variant == Culled && p.culled_smart;
+    // A threshold that is given is what planes would give.
+    let has_threshold = is_smart && matches!(p.smart.placement, SmartPlacement::Fitted { epsilon_m: Some(_) });
     let goes_by_distance = variant == LevelMap || variant == Culled && !p.culled_smart;
     // Each with whether it is set, and whether it is heeded.
     let options = [
@@ -79,7 +83,7 @@ fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
         ("intensity", p.intensity != IntensityRule::Face, is_sampled),
         ("planes-within", p.planes_within_m.is_some(), goes_by_distance),
         ("shadows", p.shadows, variant != Stencil),
-        ("planes", given.has("planes"), is_sampled),
+        ("planes", given.has("planes"), is_sampled && !has_threshold),
         ("map-size", given.has("map-size"), variant != Stencil),
         ("mrt", given.has("mrt"), !matches!(variant, Volumetric | Stencil)),
         ("levels", given.has("levels"), is_smart && p.smart.placement != SmartPlacement::Kept),
@@ -87,13 +91,28 @@ fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
         ("epsilon", given.has("epsilon"), is_smart),
     ];
     let idle = options.into_iter().filter(|&(_, is_set, is_heeded)| is_set && !is_heeded);
-    let names: Vec<String> = idle.map(|(name, ..)| format!("`{name}`")).collect();
-    (!names.is_empty()).then(|| format!("{} does not heed {}", variant.as_str(), names.join(", ")))
+    heedless(variant.as_str(), idle.map(|(name, ..)| name))
+}
+
+/// Options of waves are given with a height map in their place, which has no chance in it and stands still.
+fn unheeded_by_map(p: &Parameters, given: &Given) -> Option<String> {
+    p.water_map.as_ref()?;
+    heedless("`water-map`", ["seed", "time-step"].into_iter().filter(|name| given.has(name)))
+}
+
+/// A line that names options, if there are any.
+fn heedless(who: &str, options: impl Iterator<Item = &'static str>) -> Option<String> {
+    let names: Vec<String> = options.map(|name| format!("`{name}`")).collect();
+    (!names.is_empty()).then(|| format!("{who} does not heed {}", names.join(", ")))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use super::super::water_map::WaterMap;
     use super::*;
+    use crate::scene::{HeightMap, Samples};
 
     #[test]
     fn given_options_that_a_variant_does_not_heed_are_named() {
@@ -102,13 +121,18 @@ mod tests {
         let smart = Parameters { culled_smart: true, ..plain.clone() };
         let mut kept = plain.clone();
         kept.smart.placement = SmartPlacement::Kept;
+        let mut by_epsilon = smart.clone();
+        by_epsilon.smart.placement = SmartPlacement::Fitted { epsilon_m: Some(0.05) };
         for (parameters, options, variant, names) in [
             (&kept, "planes levels smart-placement", Hit, "`planes`, `levels`, `smart-placement`"),
-            (&plain, "planes levels epsilon", LevelMapSmart, ""),
+            (&plain, "planes levels", LevelMapSmart, ""),
+            (&by_epsilon, "planes levels epsilon", LevelMapSmart, "`planes`"),
+            (&by_epsilon, "levels epsilon", LevelMapSmart, ""),
             (&kept, "planes levels", LevelMapSmart, "`levels`"),
-            (&plain, "planes levels epsilon", LevelMap, "`levels`, `epsilon`"),
+            (&by_epsilon, "smart planes levels epsilon", LevelMap, "`smart`, `levels`, `epsilon`"),
             (&plain, "levels", Culled, "`levels`"),
-            (&smart, "planes levels epsilon", Culled, ""),
+            (&smart, "planes levels", Culled, ""),
+            (&by_epsilon, "planes levels epsilon", Culled, "`planes`"),
             (&plain, "map-size mrt planes", Stencil, "`planes`, `map-size`, `mrt`"),
             (&plain, "map-size mrt planes", Volumetric, "`mrt`"),
             (&plain, "map-size mrt", Hit, ""),
@@ -121,5 +145,19 @@ mod tests {
                 if names.is_empty() { String::new() } else { format!("{} does not heed {names}", variant.as_str()) };
             assert_eq!(found, expected, "{options}, {variant:?}");
         }
+    }
+
+    #[test]
+    fn water_by_a_map_heeds_nothing_of_moving_waves() {
+        let heights = HeightMap::new(2, 2, Samples::Float(vec![0.0; 4])).unwrap();
+        let map = Some(WaterMap::new("flat".to_owned(), Arc::new(heights)));
+        let still = Parameters { water_map: map, ..Parameters::default() };
+        let given = |options: &str| options.split_whitespace().map(str::to_owned).collect();
+        assert_eq!(
+            unheeded_by_map(&still, &given("camera seed time-step")).as_deref(),
+            Some("`water-map` does not heed `seed`, `time-step`")
+        );
+        assert_eq!(unheeded_by_map(&still, &given("camera")), None);
+        assert_eq!(unheeded_by_map(&Parameters::default(), &given("seed time-step")), None);
     }
 }

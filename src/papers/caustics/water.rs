@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::bounding_box::ReceiverBox;
-use super::landing::{along_and_across, moved_by_slope};
+use super::landing::{along_and_across, most_moved, moved_by_slope};
 use super::parameters::Parameters;
 use super::water_map::WaterMap;
 use crate::scene::Light;
@@ -123,8 +123,8 @@ impl Reach {
         // Light that grazes the water is refracted to the latter.
         let cos2 = (cos_refracted * cos_refracted).max(1.0 - 1.0 / (self.index * self.index));
         let (along, _) = along_and_across(cos2.sqrt(), self.index);
-        // No ray is turned by much more than a radian.
-        let moved = (along * self.slope).min(1.0 / cos2);
+        // In proportion to small slopes, which is a little too far in water of moderate ones; steep water turns light farther.
+        let moved = (along * self.slope).min(1.0 / cos2).max(most_moved(cos2.sqrt(), self.slope, self.index));
         self.rise_m * ((1.0 - cos2).max(0.0) / cos2).sqrt() + moved * (depth_m + self.rise_m).max(0.0)
     }
 }
@@ -187,7 +187,8 @@ impl Grid {
         // From overhead a ray is turned by (1 - 1/n) of the slope; between vertices it strays by an eighth of its second
         // derivative.
         let index = f64::from(parameters.refraction_index);
-        let slanted = boxes.iter().map(|(b, _)| moved_by_slope(b.axes.v.y, index)).fold(0.0, f64::max);
+        let most_slanted = |(b, light): &(ReceiverBox, Light)| moved_by_slope(least_cosine(light, b, index), index);
+        let slanted = boxes.iter().map(most_slanted).fold(0.0, f64::max);
         let turn = parameters.mean_slope() * (1.0 - 1.0 / index).max(slanted / 2.0);
         let bend = turn * (TAU / parameters.shortest_wave_m()).powi(2) * depth_m;
         let strays = if bend > 0.0 { (2.0 * texel_m / bend).sqrt() } else { f64::INFINITY };
@@ -277,6 +278,15 @@ fn cos_refracted(light: &Light, target: DVec3, receiver: &ReceiverBox, entry: DV
     }
 }
 
+/// Cosine of the angle to the vertical at which the most slanted light runs down through flat water to a box's corners.
+pub fn least_cosine(light: &Light, receiver: &ReceiverBox, refraction_index: f64) -> f64 {
+    let cosine = |corner| {
+        let entry = entry_point(light, corner, receiver, refraction_index);
+        cos_refracted(light, corner, receiver, entry)
+    };
+    receiver.corners().map(cosine).into_iter().fold(f64::INFINITY, f64::min)
+}
+
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
@@ -286,27 +296,37 @@ mod tests {
     use super::super::reference::refract;
     use super::*;
 
-    /// Boxes of a floor of 2 x 2 m, 3 m down, under light from `direction`.
-    fn floor_under(direction: Vec3) -> [(ReceiverBox, Light); 1] {
+    /// Boxes of a floor of 2 x 2 m, 3 m down, under light from `direction`, below water of an index.
+    fn floor_below(refraction_index: f64, direction: Vec3) -> [(ReceiverBox, Light); 1] {
         let light = Light::Parallel { direction, intensity: Vec3::ONE };
         let points = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, z)| Vec3::new(x, -3.0, z));
-        let axes = Axes::aligned_with(&light, DVec3::NEG_Y * 3.0, 4.0 / 3.0);
+        let axes = Axes::aligned_with(&light, DVec3::NEG_Y * 3.0, refraction_index);
         [(ReceiverBox::around(axes, &points), light)]
+    }
+
+    fn floor_under(direction: Vec3) -> [(ReceiverBox, Light); 1] {
+        floor_below(4.0 / 3.0, direction)
     }
 
     const SLANTED: Vec3 = Vec3::new(1.0, -0.5, 0.0);
 
-    /// Rays through every place of a swell that is wider than the mesh, and through small waves: those that the floor receives enter
-    /// through the mesh.
+    /// Rays through every place of a swell that is wider than the mesh, through small waves, and through a steep one: those that the
+    /// floor receives enter through the mesh.
     #[test]
     fn the_mesh_holds_all_water_that_lights_the_receivers() {
         let swell = WaveParameters { count: 3, amplitude_m: 4.0, wavelength_m: 200.0 };
         let small = WaveParameters { count: 12, amplitude_m: 0.05, wavelength_m: 1.2 };
+        let steep = WaveParameters { count: 1, amplitude_m: 0.6, wavelength_m: 1.0 };
         let grazing = Vec3::new(1.0, -0.1, 0.3);
-        for (wave_parameters, direction) in [swell, small].into_iter().flat_map(|w| [(w, SLANTED), (w, grazing)]) {
+        let water = Parameters::default().refraction_index;
+        let slanted = [(swell, water), (small, water), (small, 4.0), (steep, water), (steep, 4.0)];
+        let slanted = slanted.into_iter().flat_map(|(waves, index)| [(waves, index, SLANTED), (waves, index, grazing)]);
+        let overhead = [water, 4.0].map(|index| (steep, index, Vec3::NEG_Y));
+        for (wave_parameters, refraction_index, direction) in slanted.chain(overhead) {
+            let index = f64::from(refraction_index);
             for seed in 1..=6 {
-                let parameters = Parameters { seed, waves: wave_parameters, ..Parameters::default() };
-                let grid = Grid::over(&floor_under(direction), &parameters);
+                let parameters = Parameters { seed, waves: wave_parameters, refraction_index, ..Parameters::default() };
+                let grid = Grid::over(&floor_below(index, direction), &parameters);
                 let (low, high) = (grid.corner, grid.corner + grid.extent_m());
                 let waves = waves(&parameters);
                 let incident = direction.as_dvec3().normalize();
@@ -319,7 +339,7 @@ mod tests {
                         slope += wave.vector * (wave.amplitude_m * cosine);
                     }
                     let normal = DVec3::new(-slope.x, 1.0, -slope.y).normalize();
-                    let Some(ray) = refract(incident, normal, 1.0, 4.0 / 3.0).filter(|ray| ray.y < 0.0) else {
+                    let Some(ray) = refract(incident, normal, 1.0, index).filter(|ray| ray.y < 0.0) else {
                         continue;
                     };
                     let landing = place + DVec2::new(ray.x, ray.z) * ((height + 3.0) / -ray.y);
@@ -330,7 +350,7 @@ mod tests {
                 }
                 assert!(
                     lit > 50 && f64::from(outside) < 0.002 * f64::from(lit),
-                    "{direction}, seed {seed}: {outside} of {lit}"
+                    "{wave_parameters:?}, {index}, {direction}, seed {seed}: {outside} of {lit}"
                 );
             }
         }
@@ -355,6 +375,29 @@ mod tests {
         let turn = parameters.mean_slope() * moved_by_slope(axes.v.y, 4.0 / 3.0);
         let strays_m = turn * 3.0 * (TAU / parameters.shortest_wave_m() * cell_m).powi(2) / 8.0;
         assert!(strays_m < 0.55 * texel_m, "{strays_m} of {texel_m}");
+    }
+
+    /// The rays of a light close over the middle of a wide floor slant towards its corners, though its axis is upright.
+    #[test]
+    fn a_near_light_has_water_as_fine_as_its_most_slanted_rays_ask_for() {
+        let near = Light::Point { position: Vec3::Y * 0.3, intensity: Vec3::ONE };
+        let overhead = Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::ONE };
+        let points = [(-3.0, -3.0), (-3.0, 3.0), (3.0, -3.0), (3.0, 3.0)].map(|(x, z)| Vec3::new(x, -0.5, z));
+        let index = 4.0 / 3.0;
+        let lit_by = |light: Light| {
+            let axes = Axes::aligned_with(&light, DVec3::NEG_Y * 0.5, index);
+            [(ReceiverBox::around(axes, &points), light)]
+        };
+        let (near, overhead) = (lit_by(near), lit_by(overhead));
+        let cosine = |[(receiver, light)]: &[(ReceiverBox, Light); 1]| least_cosine(light, receiver, index);
+        // To a corner the ray that reaches it falls towards the critical angle.
+        assert!((0.64..0.69).contains(&cosine(&near)), "{}", cosine(&near));
+        assert_eq!(cosine(&overhead), overhead[0].0.axes.v.y);
+        assert!((near[0].0.axes.v.y - 1.0).abs() < 1e-9);
+        let parameters = Parameters { water_triangles: 200, map_size: 128, ..Parameters::default() };
+        let grid = Grid::over(&overhead, &parameters);
+        let [fine, plain] = [&near, &overhead].map(|boxes| grid.refined(boxes, &parameters).columns);
+        assert!(fine > plain, "{fine} and {plain} columns");
     }
 
     /// Refined cells are divided alike, since there would be hardly fewer if each were divided by what its own water bends the light

@@ -23,7 +23,8 @@ use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{
-    Bed, DRAWN, Kept, Lava, NEEDS, Object, Parameters, Particles, Rock, RockSource, Shading, Sides, Simulation, Variant,
+    Bed, DRAWN, Inflow, Kept, Lava, NEEDS, Object, Parameters, Particles, Rock, RockSource, Shading, Sides, Simulation,
+    Variant,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMapSource, Mesh, promised_triangles};
@@ -335,8 +336,7 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
         Some(times.iter().sum::<f64>() / 1e3).filter(|&s| s > 0.0)
     };
     let rate = |count: f64, names: &[&str]| json!(time_s(names).map(|s| count / s));
-    // Those that have come out, of a vent.
-    let particles = f64::from(paper.animate.out());
+    let particles = particles_out(parameters, measurement);
     let grid_points = parameters.density.iter().map(|&n| f64::from(n)).product::<f64>();
     let splats = parameters.splats.iter().map(|&n| f64::from(n)).product::<f64>();
     let sorted = ["cell-keys", "sort-count", "sort-sum", "sort-scatter", "arrange", "cell-starts"];
@@ -360,4 +360,54 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
         ("grid_points_per_s", rate(grid_points, &["density", "extract"])),
         ("splats_per_s", rate(splats, &["visibility", "blending"])),
     ])
+}
+
+/// Particles in the middle one of the measured frames, as the times are the middle ones. A vent lets out more from frame to frame, so that the
+/// frame in the middle has the median.
+fn particles_out(parameters: &Parameters, measurement: &Measurement) -> f64 {
+    let inflow = Inflow::of(parameters, parameters.particles);
+    let frames = frames(measurement);
+    let [below, above] = [frames.div_ceil(2), frames / 2 + 1].map(|after| f64::from(inflow.out(after as u32)));
+    0.5 * (below + above)
+}
+
+/// Frames of a repetition.
+fn frames(measurement: &Measurement) -> usize {
+    let Measurement { frame_ms, gpu_ms, bracket_ms, .. } = measurement;
+    let [plain, timestamped, bracketed] = [frame_ms, gpu_ms, bracket_ms].map(Vec::len);
+    match measurement.repeat as usize {
+        // The bracketed frames come last: a repetition that was given up among them has all of the others.
+        repeat if plain == timestamped && bracketed < plain => plain / (repeat + 1),
+        0 => plain,
+        repeat => bracketed / repeat,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::lava::{Flow, Vent};
+
+    /// Also where a repetition was given up half-way, and of particles that are all there from the start.
+    #[test]
+    fn particles_of_a_vent_are_those_of_the_measured_frames() {
+        let measured = |repeat: u32, [plain, timestamped, bracketed]: [usize; 3]| Measurement {
+            repeat,
+            frame_ms: vec![1.0; plain],
+            gpu_ms: vec![1.0; timestamped],
+            bracket_ms: vec![1.0; bracketed],
+            ..Measurement::default()
+        };
+        let vent = Vent { effusion_m3_s: 0.018, ..Vent::default() };
+        let flow = Flow { vent, ..Flow::default() };
+        let erupting = Parameters { simulation: Simulation::Sph, flow, ..Parameters::default() };
+        // 1000 in 30 frames: 500 after 15 and 533 after 16.
+        for (repeat, counts) in
+            [(1, [30; 3]), (2, [60; 3]), (2, [70, 60, 60]), (2, [90, 70, 60]), (2, [90, 90, 75]), (0, [30, 7, 0])]
+        {
+            assert_eq!(particles_out(&erupting, &measured(repeat, counts)), 516.5, "{repeat} {counts:?}");
+        }
+        assert_eq!(particles_out(&erupting, &measured(0, [1, 0, 0])), 33.0);
+        assert_eq!(particles_out(&Parameters::default(), &measured(1, [30; 3])), 40_000.0);
+    }
 }

@@ -118,12 +118,12 @@ impl Collider {
         let mut normal = Vec3::Y;
         for (map, terrain) in self.maps.iter().zip(self.scene.terrain_blocks(&self.parameters, &rays, 1.0)) {
             let found = map.with(Find { terrain: &terrain, hit });
-            if found.0 != hit {
+            // Land in the base is looked for a hair farther than the base, which may lie beyond the segment's end.
+            if found.0 != hit && found.0.depth_m <= 1.0 {
                 (hit, normal) = found;
             }
         }
-        // Land in the base counts a hair farther than the base, which may be the segment's end.
-        let t = f64::from(hit.depth_m).min(1.0);
+        let t = f64::from(hit.depth_m);
         (hit.surface != Surface::Sky).then(|| Contact {
             t: Some(t),
             distance_m: t * a.distance(b),

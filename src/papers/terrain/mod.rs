@@ -67,6 +67,7 @@ mod unfinished;
 mod view;
 mod voids;
 mod walk;
+mod warnings;
 
 use std::sync::Arc;
 
@@ -104,6 +105,7 @@ pub use self::tiles::TileCounts;
 use self::tiles::Tiles;
 pub use self::voids::void_warnings;
 use crate::gpu::{Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
+use crate::measure::parameter::Given;
 use crate::measure::{Paper, Target};
 use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 use crate::scene::Camera;
@@ -117,6 +119,9 @@ pub const WRITTEN: [&str; 5] = ["camera", "haze", "mesh-error", "normals", "sun"
 /// The paper under one variant.
 pub struct Terrain {
     parameters: Parameters,
+    variant: Variant,
+    /// Names of the parameters that a user gave.
+    given: Given,
     scene: Scene,
     geometric_transformation: GeometricTransformation,
     /// The maps on the device, where a pass reads them there.
@@ -229,6 +234,8 @@ impl Terrain {
         };
         let mut terrain = Terrain {
             parameters: parameters.clone(),
+            variant,
+            given: Given::default(),
             scene,
             geometric_transformation: GeometricTransformation::new(traversal.footprint(parameters.interpolation)),
             device_scene,
@@ -243,6 +250,12 @@ impl Terrain {
             terrain.objects = Some(ObjectPasses::new(&build, inputs.objects, (depth, picture), casters)?);
         }
         Ok(terrain)
+    }
+
+    /// The same, of parameters of which a user gave those: what the variant does not heed of them is warned of.
+    pub fn given(mut self, given: Given) -> Self {
+        self.given = given;
+        self
     }
 
     /// Sets the numbers of [`WRITTEN`] of the next frames; all others are those that it was made with. The caller has
@@ -284,8 +297,12 @@ impl Terrain {
 
     /// The tiles of all maps; of [`Variant::TiledCompute`].
     pub fn tiles(&self) -> Option<TileCounts> {
+        self.tiles_by_map().reduce(TileCounts::and)
+    }
+
+    fn tiles_by_map(&self) -> impl Iterator<Item = TileCounts> {
         let maps = self.device_scene.iter().flat_map(|scene| &scene.maps);
-        maps.filter_map(|map| map.levels.tiles.as_ref()).map(Tiles::counts).reduce(TileCounts::and)
+        maps.filter_map(|map| map.levels.tiles.as_ref()).map(Tiles::counts)
     }
 
     /// Draws once more to learn which tiles that reads, and copies to the device what it lacks of them; true where that is
@@ -424,8 +441,9 @@ impl Paper for Terrain {
     fn warnings(&self) -> Vec<String> {
         let haze = self.parameters.haze_warning(&self.scene.extent);
         let memory_mib = self.parameters.tile_memory_mib;
-        let lacking = self.tiles().into_iter().flat_map(|counts| counts.warnings(memory_mib));
         let count = self.scene.grounds.len();
+        let lacking =
+            (1..).zip(self.tiles_by_map()).flat_map(|(number, counts)| counts.warnings(memory_mib, (number, count)));
         let winding =
             (1..).zip(&self.scene.grounds).filter_map(|(number, ground)| ground.winding_warning(number, count));
         let voids = void_warnings(self.scene.height_maps());
@@ -437,7 +455,9 @@ impl Paper for Terrain {
             "`corners` packed is of bilinear cells alone: rays over bicubic terrain read the image of the levels"
                 .to_owned()
         });
-        voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(unpacked).chain(unread).collect()
+        let unheeded = warnings::unheeded(&self.parameters, &self.given, self.variant);
+        let of_variant = unpacked.into_iter().chain(unread).chain(unheeded);
+        voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(of_variant).collect()
     }
 
     fn camera(&self) -> Option<Camera> {

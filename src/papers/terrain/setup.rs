@@ -62,6 +62,8 @@ pub struct Setup {
     pub seed: u64,
     /// Name of the preset or the experiment.
     pub preset: Option<String>,
+    /// Names of the parameters that were given.
+    pub given: Given,
 }
 
 impl Default for Setup {
@@ -82,6 +84,7 @@ impl Default for Setup {
             exaggeration: 1.0,
             seed: 1,
             preset: None,
+            given: Given::default(),
         }
     }
 }
@@ -246,7 +249,8 @@ impl Study for Setup {
         variant: Variant,
     ) -> Result<Terrain, gpu::Error> {
         let inputs = scene.inputs();
-        Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
+        let terrain = Terrain::new(shaders, label, variant, &self.parameters, &inputs);
+        terrain.map(|terrain| terrain.given(self.given.clone())).map_err(|error| self.name_map(label, error))
     }
 
     fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
@@ -447,6 +451,7 @@ impl Study for Setup {
     }
 
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        self.given = given.clone();
         let (places, maps) = (self.places.len(), self.maps.len());
         if places > maps {
             return Err(Error::Input(format!("`place`: {places} places for {maps} maps; give one for each")));

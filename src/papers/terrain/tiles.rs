@@ -52,8 +52,12 @@ impl TileCounts {
         }
     }
 
-    /// A line on each thing that keeps tiles out of a pool of so much memory.
-    pub(super) fn warnings(&self, tile_memory_mib: u32) -> impl Iterator<Item = String> + use<> {
+    /// A line on each thing that keeps tiles of map `number` of `count` out of their pool, all pools having so much memory.
+    pub(super) fn warnings(
+        &self,
+        tile_memory_mib: u32,
+        (number, count): (usize, usize),
+    ) -> impl Iterator<Item = String> + use<> {
         let TileCounts { missing, is_cut, .. } = *self;
         let cut = is_cut.then(|| {
             format!(
@@ -67,7 +71,7 @@ impl TileCounts {
                 "{missing} tiles of those that the rays asked for lack room and are drawn from the level above them: {way_out}"
             )
         });
-        lacking.into_iter().chain(cut)
+        lacking.into_iter().chain(cut).map(move |line| format!("`map` {number} of {count}: {line}"))
     }
 }
 
@@ -230,5 +234,26 @@ impl FieldWork for Texels {
             bytes[..texels.len()].copy_from_slice(texels);
         }
         bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The way out for a map that lacks room is its own: an image that holds no more is another's.
+    #[test]
+    fn each_map_is_told_of_its_own_pool() {
+        let said = |missing: usize, is_cut: bool, number: usize| {
+            let counts = TileCounts { missing, is_cut, ..TileCounts::default() };
+            counts.warnings(64, (number, 2)).collect::<Vec<String>>()
+        };
+        let [lacking] = &said(5, false, 1)[..] else { panic!("{:?}", said(5, false, 1)) };
+        assert!(lacking.starts_with("`map` 1 of 2: 5 tiles") && lacking.ends_with("raise `tile-memory`"), "{lacking}");
+        let [cut] = &said(0, true, 2)[..] else { panic!("{:?}", said(0, true, 2)) };
+        assert!(cut.starts_with("`map` 2 of 2: `tile-memory` 64") && cut.ends_with("take less memory"), "{cut}");
+        let [lacking, _] = &said(3, true, 2)[..] else { panic!("{:?}", said(3, true, 2)) };
+        assert!(lacking.ends_with("an image of this device holds no more"), "{lacking}");
+        assert!(said(0, false, 1).is_empty());
     }
 }

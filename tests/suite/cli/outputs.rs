@@ -59,6 +59,13 @@ fn outputs_that_are_one_file_or_an_input_are_refused() {
     ] {
         long(out.path()).args(options).run().refused(2, &["two outputs"]);
     }
+    for options in ["--json new/a --csv new", "--csv new --trace sub/../new/er/a"] {
+        long(out.path()).args(options).run().refused(2, &["new: one output", "another below it"]);
+    }
+    // Files that no option names are among them.
+    let own = "experiment 5-1 --out . --json caustics-5-1.csv";
+    caustics(own).inside(out.path()).on_test_device().run().refused(2, &["caustics-5-1.csv", "two outputs"]);
+    fumarole("ab --out . --json ab-b.json lava").inside(out.path()).run().refused(2, &["ab-b.json", "two outputs"]);
     let variants = "--variant level-map,volumetric --image a.png --csv a-volumetric.png";
     long(out.path()).args(variants).run().refused(2, &["a-volumetric.png", "two outputs"]);
     let dumps = "--dump caustics-map=a.png --dump position-map=./a.png";
@@ -99,6 +106,10 @@ fn a_pipe_that_has_a_name_is_opened_once() {
 fn the_main_job_names_its_pictures_itself() {
     let out = folder();
     fumarole("all --image a.png").inside(out.path()).run().refused(2, &["--image", "--out"]);
+    for named in ["--csv terrain.png", "--report=fumarole.json"] {
+        let all = fumarole("all --out . --device no-such").args(named).inside(out.path());
+        all.run().refused(2, &["two outputs"]);
+    }
     assert!(entries(out.path()).is_empty());
     // Of the last paper, too, before the first is measured.
     fs::create_dir(out.path().join("terrain.png")).unwrap();

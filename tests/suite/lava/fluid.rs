@@ -299,6 +299,23 @@ fn late_frames_and_long_ones_are_several_submissions() {
     });
 }
 
+/// Of so few particles 75 steps are no work, but more passes than one command buffer is to have.
+#[test]
+fn a_frame_of_very_many_passes_is_several_submissions() {
+    gpu_test(|device| {
+        let submissions = |substeps: u32| {
+            let flow = Flow { substeps: Some(substeps), corrections: 100, viscosity_pa_s: 0.0, ..flowing().flow };
+            let parameters = Parameters { particles: 8, flow, ..flowing() };
+            let mut animate = animate(device, &parameters, &Particles::of(&parameters));
+            let mut recorder = Recorder::new(device).unwrap();
+            let sample = recorder.run(Mode::Plain, |frame| animate.record(frame)).unwrap();
+            sample.spans.iter().filter(|span| span.track == Track::Wait).count()
+        };
+        // 230 passes a step, of 16,384 in a submission.
+        assert_eq!([5, 75].map(submissions), [1, 2]);
+    });
+}
+
 #[test]
 fn numbers_that_make_no_fluid_are_refused() {
     let good = flowing();

@@ -124,7 +124,9 @@ fn toes_come_out_beside_each_other() {
     gpu_test(|device| {
         let heat = Heat { rheology: Rheology::Basalt, emissivity: 0.0, ..Heat::default() };
         let vent = Vent { toe_m3: 0.01, ..erupting().flow.vent };
-        let parameters = Parameters { flow: Flow { vent, heat, ..erupting().flow }, ..erupting() };
+        // In shorter steps, of which each fills no more of a small toe than it may.
+        let flow = Flow { vent, heat, substeps: Some(4), ..erupting().flow };
+        let parameters = Parameters { flow, ..erupting() };
         let toes = vent.toes(&parameters);
         assert!(toes.len() > 8, "{}", toes.len());
         let mut animate = animate(device, &parameters, &Particles::of(&parameters));

@@ -342,3 +342,24 @@ fn land_in_the_base_is_met_on_every_map() {
         assert!(contact.point.y.abs() < 1e-3, "{contact:?}");
     }
 }
+
+/// A flat segment that ends just below the base ends before the wall of another map, however near in height the base and its end
+/// are for single precision.
+#[test]
+fn a_wall_beyond_the_end_of_a_segment_is_not_met() {
+    let plateau = |x: f64| MapInput {
+        map: Arc::new(map(11, 11, Samples::Float(vec![1000.0; 11 * 11]), 10.0)),
+        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
+    };
+    // The western wall of the second stands at x = 12.
+    let maps = [plateau(-1000.0), plateau(62.0)];
+    let parameters = Parameters { base_level_m: Some(0.0), ..Parameters::default() };
+    let collider = Collider::new(&parameters, &Inputs { maps: &maps, ..Inputs::default() });
+    let start = DVec3::new(0.0, 1e-4, 0.0);
+    let before = collider.segment(start, DVec3::new(10.0, -1e-5, 0.0)).unwrap();
+    assert_eq!(before.surface, Surface::Base, "{before:?}");
+    assert!((before.t.unwrap() - 10.0 / 11.0).abs() < 1e-3, "{before:?}");
+    let through = collider.segment(start, DVec3::new(20.0, -1e-5, 0.0)).unwrap();
+    assert_eq!((through.surface, through.map), (Surface::WallWest, 1), "{through:?}");
+    assert!((through.point.x - 12.0).abs() < 1e-3, "{through:?}");
+}

@@ -243,7 +243,7 @@ impl Crust {
             let share = |at: usize| toes.get(at).map_or(0.0, |toe| toe.0);
             // Particles at the rim of the kernel may have left the cells in which they are looked for.
             texel_of.is_uncertain |= share(0) + share(1) < 1e-2;
-            // Of the two that have most either may be none of the three that lie nearest.
+            // The device looks at the three that lie nearest: of all toes, either of the two that have most may be none of those.
             let is_near = |toe: &(f64, f64)| toes.iter().filter(|other| other.1 < toe.1 + 1e-6).count() <= 3;
             texel_of.is_uncertain |= !toes.iter().take(2).filter(|toe| toe.0 > 0.0).all(is_near);
             if share(0) > 0.0 {

@@ -51,7 +51,7 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         "space",
         Extents(parameters.space_m.to_array()).text(),
         &format!(
-            "is so large beside the `block` that its cells are {:.3} metres long, and three of them above each other would hold \
+            "is so large beside the `block` that its cells are {:.3} metres long, and three of them above each other may hold \
              {crowd:.0} particles, of {MOST_IN_COLUMN} at most: make it smaller, or take fewer `particles`",
             scale.cell_m(parameters, parameters.particles).max_element()
         ),
@@ -80,8 +80,9 @@ pub fn check(parameters: &Parameters) -> Result<(), ParameterError> {
         ParameterError::check(fallen_m <= scale.support_m, "substeps", substeps, problem)?;
     }
     check_heat(flow, &scale)?;
-    flow.crust.check(parameters)?;
+    // Toes without a vent have no seams, which the crust would look at.
     flow.vent.check(parameters)?;
+    flow.crust.check(parameters)?;
     let needed = chebyshev::needed(scale.stiffness * scale.stiffest);
     let (name, viscosity_pa_s) = match flow.heat.rheology {
         Rheology::Constant => ("viscosity", flow.viscosity_pa_s),
@@ -176,4 +177,19 @@ fn check_heat(flow: &Flow, scale: &Scale) -> Result<(), ParameterError> {
         heat.crust_pa_s,
         "must be at least the melt's, `viscosity`",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::vent::Vent;
+    use super::*;
+
+    /// On columns that are too long for seams.
+    #[test]
+    fn toes_without_a_vent_are_named_before_their_seams() {
+        let flow = Flow { vent: Vent { toe_m3: 1.0, ..Vent::default() }, ..Flow::default() };
+        let parameters = Parameters { simulation: Simulation::Sph, density: [2, 24, 2], flow, ..Parameters::default() };
+        let error = check(&parameters).unwrap_err();
+        assert!(error.name == "toe-volume" && error.range.contains("`effusion-rate`"), "{error}");
+    }
 }

@@ -75,8 +75,8 @@ impl Scale {
         Cells::of_side(parameters.space_m, self.support_m, most, particles)
     }
 
-    /// Particles at rest in three cells above each other, full of lava as far as it goes. They are some dozens, unless a space has room for more
-    /// cells of the kernel's radius than there may be, so that they are larger.
+    /// Most particles at rest that three cells above each other may hold: full of lava as far as it goes, since it may pool anywhere. They are some
+    /// dozens, unless a space has room for more cells of the kernel's radius than there may be, so that they are larger.
     pub fn in_column(&self, parameters: &Parameters, particles: u32) -> f64 {
         let above = f64::from(self.cells(parameters, particles).counts[1].min(3));
         let cell = self.cell_m(parameters, particles) / self.spacing_m;

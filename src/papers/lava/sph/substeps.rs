@@ -29,8 +29,8 @@ pub fn of(parameters: &Parameters, support_m: f64) -> u32 {
     parameters.flow.substeps.unwrap_or_else(|| needed(parameters, support_m).min(f64::from(MOST)) as u32)
 }
 
-/// Depth of the lava along gravity: of the block as it stands there; of what comes out of a vent the height of the room above that, of all of it
-/// were it level, or of all of it in the end that the floor falls to.
+/// Depth of the lava along gravity: of the block as it stands there, between walls at least its height; of what comes out of a vent the height of
+/// the room above that, of all of it were it level, or, between walls, of all of it in the end that the floor falls to.
 fn depth_m(parameters: &Parameters) -> f64 {
     let flow = &parameters.flow;
     let [x, y, z] = flow.block_m.as_dvec3().to_array();

@@ -16,7 +16,7 @@ pub const MOST_TOES: f64 = 500.0;
 /// Height of a toe over its radius.
 const FLATNESS: f64 = 0.75;
 /// Toes have between a half and one and a half times the mean's volume.
-const LEAST_VOLUME: f32 = 0.5;
+pub const LEAST_VOLUME: f32 = 0.5;
 /// Places on a toe's rim at which it may break.
 const PLACES: u32 = 16;
 /// Distance of a break from its toe's middle, over the radius: the skin breaks at the foot, inside the rim.

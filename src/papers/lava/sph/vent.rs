@@ -5,13 +5,13 @@ use glam::{DVec2, DVec3, Vec3};
 use super::super::parameters::Parameters;
 use super::Scale;
 use super::heat::Rheology;
-use super::toes::{MOST_TOES, Toe, toe_of, toes};
+use super::toes::{LEAST_VOLUME, MOST_TOES, Toe, radius_m, toe_of, toes};
 use crate::field;
 use crate::measure::ParameterError;
 use crate::measure::parameter::{Cost, Parameter, Range};
 use crate::scene::random::Random;
 
-/// Largest fraction of the vent's volume that one step fills.
+/// Largest fraction of the room in which lava comes out that one step fills.
 const MOST_FILLED: f64 = 0.1;
 
 /// The vent, in the ranges of [`Vent::declared`].
@@ -121,14 +121,6 @@ impl Vent {
             format!("{x},{z}"),
             &format!("must lie in the space with all of its radius, {} metres, and that height", self.radius_m),
         )?;
-        let step_m3 = Scale::of(parameters).step_s * f64::from(self.effusion_m3_s);
-        ParameterError::check(
-            step_m3 <= MOST_FILLED * self.volume_m3(),
-            "effusion-rate",
-            self.effusion_m3_s,
-            "would fill more than a tenth of the room above the vent in a step: widen it by `vent-radius`, or take a shorter \
-             `time-step` or more `substeps`",
-        )?;
         let is_basalt = self.toe_m3 == 0.0 || parameters.flow.heat.rheology == Rheology::Basalt;
         ParameterError::check(is_basalt, "toe-volume", self.toe_m3, "needs a skin, which only `rheology` basalt has")?;
         let block_m3 = parameters.flow.block_m.as_dvec3().element_product();
@@ -138,6 +130,21 @@ impl Vent {
             "toe-volume",
             self.toe_m3,
             &format!("must be at least {least_m3} cubic metres, so that the `block` is no more than {MOST_TOES} toes"),
+        )?;
+        let step_m3 = Scale::of(parameters).step_s * f64::from(self.effusion_m3_s);
+        let (place, wider) = if self.narrowest_m() < f64::from(self.radius_m) {
+            ("smallest toe", "toe-volume")
+        } else {
+            ("vent", "vent-radius")
+        };
+        ParameterError::check(
+            step_m3 <= MOST_FILLED * self.room_m3(),
+            "effusion-rate",
+            self.effusion_m3_s,
+            &format!(
+                "would fill more than a tenth of the room above the {place} in a step: widen it by `{wider}`, or take a shorter \
+                 `time-step` or more `substeps`"
+            ),
         )
     }
 
@@ -152,13 +159,20 @@ impl Vent {
         toes(self, flow.block_m.as_dvec3().element_product(), fall, sides_m, parameters.seed)
     }
 
-    /// Of the vent, in which lava comes out: a cylinder as high as its radius.
-    fn volume_m3(&self) -> f64 {
-        std::f64::consts::PI * f64::from(self.radius_m).powi(3)
+    /// Least radius of the disc over which lava comes out: the vent's, or that of the smallest toe if it is narrower.
+    fn narrowest_m(&self) -> f64 {
+        let vent_m = f64::from(self.radius_m);
+        if self.toe_m3 == 0.0 { vent_m } else { vent_m.min(radius_m(f64::from(LEAST_VOLUME) * f64::from(self.toe_m3))) }
+    }
+
+    /// Least room in which lava comes out: a cylinder over that disc, as high as the vent's radius.
+    fn room_m3(&self) -> f64 {
+        std::f64::consts::PI * f64::from(self.radius_m) * self.narrowest_m().powi(2)
     }
 
     /// Places in the vent for so many particles, which fill it evenly however many follow each other: an additive sequence by
-    /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives. Of a toe they lie within it.
+    /// the plastic number's next of kin (Roberts 2018), from a place that the seed gives. Those of a toe lie around its
+    /// middle, which moves as it grows, no farther away than the radius that it has in the end.
     pub fn places(&self, parameters: &Parameters, margin_m: f64) -> Vec<Vec3> {
         /// The root of g^4 = g + 1.
         const G: f64 = 1.220_744_084_605_759_6;
@@ -194,7 +208,6 @@ fn least_toe_m3(block_m3: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::toes::radius_m;
     use super::*;
     use crate::papers::lava::{Flow, Heat, Simulation};
 
@@ -228,9 +241,9 @@ mod tests {
         assert_ne!(places, vent.places(&Parameters { seed: 2, ..parameters }, 0.01));
     }
 
-    /// Of thin toes out of a wide vent.
+    /// Out of a vent that is wider than its toes.
     #[test]
-    fn lava_comes_out_within_its_toe() {
+    fn lava_comes_out_no_wider_than_its_toe() {
         let vent = Vent { effusion_m3_s: 0.002, middle_m: [0.3, 0.6], radius_m: 0.07, toe_m3: 0.0001 };
         let block_m = Vec3::new(0.3, 0.1, 0.45);
         let flow = Flow { block_m, vent, ..Flow::default() };
@@ -246,12 +259,27 @@ mod tests {
         }
     }
 
+    /// A tenth of the vent's room is 1.06e-3 cubic metres, of that of a toe of a litre 3.5e-4; one of 10 litres is wider than the vent. The
+    /// smallest toe has half of the mean's volume, and a step brings 6.7e-4.
+    #[test]
+    fn lava_of_toes_has_no_more_room_than_they_have() {
+        let of = |toe_m3: f32| {
+            let vent = Vent { effusion_m3_s: 0.08, toe_m3, ..Vent::default() };
+            let heat = Heat { rheology: Rheology::Basalt, ..Heat::default() };
+            let flow = Flow { vent, heat, substeps: Some(4), ..Flow::default() };
+            vent.check(&Parameters { simulation: Simulation::Sph, flow, ..Parameters::default() })
+        };
+        assert_eq!([of(0.0), of(0.02)], [Ok(()), Ok(())]);
+        let error = of(0.002).unwrap_err();
+        assert!(error.name == "effusion-rate" && error.range.contains("`toe-volume`"), "{error}");
+    }
+
     /// The bound of a message, typed back.
     #[test]
     fn the_least_toe_is_taken_as_it_is_told() {
         for block_m in [Vec3::new(0.3, 0.2, 0.45), Vec3::new(1.2, 0.6, 1.0), Vec3::new(0.7, 0.1, 0.3)] {
             let of = |toe_m3: f32| {
-                let vent = Vent { effusion_m3_s: 0.002, toe_m3, ..Vent::default() };
+                let vent = Vent { effusion_m3_s: 0.0005, toe_m3, ..Vent::default() };
                 let heat = Heat { rheology: Rheology::Basalt, ..Heat::default() };
                 let flow = Flow { block_m, vent, heat, ..Flow::default() };
                 let parameters = Parameters { simulation: Simulation::Sph, flow, ..Parameters::default() };

@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 
 use super::super::setup::Setup;
 use crate::gpu::Mode;
-use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::parameter::EyeAndTarget;
 use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
-use crate::papers::terrain::{Variant, View};
+use crate::measure::{Error, ParameterError};
+use crate::papers::terrain::{Parameters, Variant, View};
 use crate::scene::Camera;
 
 /// Pictures without `frames`.
@@ -26,6 +26,13 @@ pub const TIMES: [&str; 3] = ["frame ms", "marks ms", "stall ms"];
 /// The camera of a picture on the way, `t` from 0 to 1.
 fn between(first: &Camera, last: &EyeAndTarget, t: f32) -> Camera {
     Camera { eye: first.eye.lerp(last.eye, t), target: first.target.lerp(last.target, t), ..*first }
+}
+
+/// Checks the last camera of a flight that begins at `first`, as the option `to` gives it; all else was checked before.
+fn check_last(parameters: &Parameters, first: &Camera, last: &EyeAndTarget) -> Result<(), ParameterError> {
+    let view = View::Camera(between(first, last, 1.0));
+    let checked = Parameters { view, ..parameters.clone() }.validate();
+    checked.map_err(|error| ParameterError { name: "to", ..error })
 }
 
 /// A row for each of so many pictures, at least two, from the setup's camera straight to another; without one as far north as the
@@ -44,6 +51,7 @@ pub fn table(
     let mut paper = build(machine, setup, &scene, Variant::TiledCompute)?.paper;
     let extent = paper.scene.extent;
     let first = setup.parameters.camera(&extent);
+    last.as_ref().map_or(Ok(()), |last| check_last(&setup.parameters, &first, last))?;
     let north = (extent.low.z - extent.high.z) as f32 * Vec3::Z;
     let last = last.unwrap_or(EyeAndTarget { eye: first.eye + north, target: first.target + north });
     // Pipelines are compiled when they are first used.
@@ -112,6 +120,26 @@ pub fn summary(table: &ResultTable) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_flight_ends_at_a_camera_that_sees_something() {
+        let first = Camera {
+            eye: Vec3::new(0.0, 500.0, 900.0),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            vertical_fov_rad: 0.7,
+            near_m: 0.01,
+            far_m: 1e6,
+        };
+        let check = |eye: Vec3, target: Vec3| {
+            check_last(&Parameters::default(), &first, &EyeAndTarget { eye, target }).map_err(|error| error.to_string())
+        };
+        assert_eq!(check(Vec3::new(50.0, 500.0, -900.0), Vec3::ZERO), Ok(()));
+        let nothing = check(Vec3::ONE, Vec3::ONE).unwrap_err();
+        assert!(nothing.starts_with("to 1,1,1,1,1,1: ") && nothing.contains("move one of them"), "{nothing}");
+        let far = check(Vec3::new(0.0, 1e9, 0.0), Vec3::ZERO).unwrap_err();
+        assert!(far.starts_with("to ") && far.contains("within 100000 km"), "{far}");
+    }
 
     #[test]
     fn a_summary_counts_stalls_and_what_is_missing() {
