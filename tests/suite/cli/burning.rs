@@ -468,7 +468,8 @@ fn an_experiment_refuses_what_it_would_not_heed() {
 
 #[test]
 fn the_umbrella_runs_it_too() {
-    let listed = fumarole("burning passes --json").args(SMALL).arg("--device").arg(device()).run().succeeded().json();
+    let listed =
+        fumarole("burning passes --json").args(SMALL).args(BALL).arg("--device").arg(device()).run().succeeded().json();
     assert_eq!(listed[0]["paper"], "burning");
 }
 

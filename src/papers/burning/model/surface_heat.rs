@@ -8,6 +8,7 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
 use glam::{DVec3, Vec3};
+use rayon::slice::ParallelSliceMut;
 
 use super::Incidence;
 use crate::scene::Bounds;
@@ -121,10 +122,18 @@ pub fn distances(
     // Behind the vertices come the voxels, each with the vertex that its heat comes from in a straight line.
     let air = Air::new(positions);
     let mut in_air = vec![(f64::INFINITY, 0); air.count()];
-    // Ways are not negative, so that their bits are in their order.
-    let mut open: BinaryHeap<Reverse<(u64, usize)>> =
-        vertices.map(|vertex| Reverse((distances[vertex].to_bits(), vertex))).collect();
-    while let Some(Reverse((bits, node))) = open.pop() {
+    // Ways are not negative, so that their bits are in their order. Those that all vertices begin with are sorted once: the heap
+    // holds what is found on the way alone.
+    let mut begun: Vec<(u64, usize)> = vertices.map(|vertex| (distances[vertex].to_bits(), vertex)).collect();
+    begun.par_sort_unstable();
+    let mut begun = begun.into_iter().peekable();
+    let mut open: BinaryHeap<Reverse<(u64, usize)>> = BinaryHeap::new();
+    let mut next = |open: &mut BinaryHeap<Reverse<(u64, usize)>>| match (open.peek(), begun.peek()) {
+        (Some(Reverse(found)), Some(first)) if first < found => begun.next(),
+        (None, _) => begun.next(),
+        _ => open.pop().map(|Reverse(found)| found),
+    };
+    while let Some((bits, node)) = next(&mut open) {
         let mut reached: Vec<(usize, f64)> = Vec::new();
         let from = match node.checked_sub(positions.len()) {
             None if f64::from_bits(bits) > distances[node] => continue,
