@@ -262,6 +262,12 @@ impl Given {
     }
 }
 
+/// Names of parameters and options as messages have them, in backticks, if there are any.
+pub fn listed<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> {
+    let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    (!names.is_empty()).then(|| names.join(", "))
+}
+
 impl FromIterator<String> for Given {
     fn from_iter<I: IntoIterator<Item = String>>(names: I) -> Self {
         Given(names.into_iter().collect())

@@ -7,7 +7,7 @@ use super::parameters::{CullSteps, IntensityRule, Parameters, SmartPlacement, Va
 use super::receiver::LitReceiver;
 use super::water::{LEVEL_M, least_cosine};
 use crate::measure::Variant as _;
-use crate::measure::parameter::Given;
+use crate::measure::parameter::{Given, listed};
 
 /// By which the landing of light moves from one metre of the water's surface to the next, root of the mean square, above which point
 /// sampling is warned of. Neighbouring rays meet where it reaches 1, which waves of many phases do in places at 2.5 standard
@@ -91,19 +91,14 @@ fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Option<String> {
         ("epsilon", given.has("epsilon"), is_smart),
     ];
     let idle = options.into_iter().filter(|&(_, is_set, is_heeded)| is_set && !is_heeded);
-    heedless(variant.as_str(), idle.map(|(name, ..)| name))
+    listed(idle.map(|(name, ..)| name)).map(|names| format!("{} does not heed {names}", variant.as_str()))
 }
 
 /// Options of waves are given with a height map in their place, which has no chance in it and stands still.
 fn unheeded_by_map(p: &Parameters, given: &Given) -> Option<String> {
     p.water_map.as_ref()?;
-    heedless("`water-map`", ["seed", "time-step"].into_iter().filter(|name| given.has(name)))
-}
-
-/// A line that names options, if there are any.
-fn heedless(who: &str, options: impl Iterator<Item = &'static str>) -> Option<String> {
-    let names: Vec<String> = options.map(|name| format!("`{name}`")).collect();
-    (!names.is_empty()).then(|| format!("{who} does not heed {}", names.join(", ")))
+    let idle = ["seed", "time-step"].into_iter().filter(|name| given.has(name));
+    listed(idle).map(|names| format!("`water-map` does not heed {names}"))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::parameters::{Parameters, SurfaceDraw, Variant};
 use crate::measure::Variant as _;
-use crate::measure::parameter::Given;
+use crate::measure::parameter::{Given, listed};
 
 /// Parameters of splats, which rays do not heed.
 const OF_SPLATS: [&str; 5] = ["splats", "splat-radius", "splat-shape", "splat-shading", "culling"];
@@ -15,9 +15,8 @@ pub(super) fn unheeded(p: &Parameters, given: &Given, variant: Variant) -> Optio
         return None;
     }
     let of_primitives = (variant == Variant::GpuDriven).then_some(OF_PRIMITIVES);
-    let idle = OF_SPLATS.into_iter().chain(of_primitives).filter(|name| given.has(name));
-    let names: Vec<String> = idle.map(|name| format!("`{name}`")).collect();
-    (!names.is_empty()).then(|| format!("{} draws by rays, which do not heed {}", variant.as_str(), names.join(", ")))
+    let idle = listed(OF_SPLATS.into_iter().chain(of_primitives).filter(|name| given.has(name)))?;
+    Some(format!("{} draws by rays, which do not heed {idle}", variant.as_str()))
 }
 
 #[cfg(test)]

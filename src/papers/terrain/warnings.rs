@@ -2,7 +2,7 @@
 
 use super::parameters::{Base, Parameters, Variant};
 use crate::measure::Variant as _;
-use crate::measure::parameter::Given;
+use crate::measure::parameter::{Given, listed};
 
 /// A line that names them, if there are any.
 pub fn unheeded(parameters: &Parameters, given: &Given, variant: Variant) -> Option<String> {
@@ -16,8 +16,7 @@ pub fn unheeded(parameters: &Parameters, given: &Given, variant: Variant) -> Opt
         ("tile-memory", variant == Variant::TiledCompute),
     ];
     let idle = options.into_iter().filter(|&(name, is_heeded)| given.has(name) && !is_heeded);
-    let names: Vec<String> = idle.map(|(name, _)| format!("`{name}`")).collect();
-    (!names.is_empty()).then(|| format!("{} does not heed {}", variant.as_str(), names.join(", ")))
+    listed(idle.map(|(name, _)| name)).map(|names| format!("{} does not heed {names}", variant.as_str()))
 }
 
 #[cfg(test)]

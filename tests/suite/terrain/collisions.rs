@@ -321,14 +321,18 @@ fn a_segment_from_below_the_base_meets_it_at_once() {
     }
 }
 
+/// A level map of nodes a side, 10 m apart, so high, whose middle is at `x`.
+fn level(side: u32, height_m: f32, x: f64) -> MapInput {
+    MapInput {
+        map: Arc::new(map(side, side, Samples::Float(vec![height_m; (side * side) as usize]), 10.0)),
+        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
+    }
+}
+
 /// Level land at the very height of the base is land on the first map and on the next, however the segments come.
 #[test]
 fn land_in_the_base_is_met_on_every_map() {
-    let level = |x: f64| MapInput {
-        map: Arc::new(map(21, 21, Samples::Float(vec![70.0; 21 * 21]), 10.0)),
-        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
-    };
-    let maps = [level(-150.0), level(150.0)];
+    let maps = [-150.0, 150.0].map(|x| level(21, 70.0, x));
     let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
     let mut random = Random::new(11);
     for number in 0..200 {
@@ -347,12 +351,8 @@ fn land_in_the_base_is_met_on_every_map() {
 /// are for single precision.
 #[test]
 fn a_wall_beyond_the_end_of_a_segment_is_not_met() {
-    let plateau = |x: f64| MapInput {
-        map: Arc::new(map(11, 11, Samples::Float(vec![1000.0; 11 * 11]), 10.0)),
-        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
-    };
     // The western wall of the second stands at x = 12.
-    let maps = [plateau(-1000.0), plateau(62.0)];
+    let maps = [-1000.0, 62.0].map(|x| level(11, 1000.0, x));
     let parameters = Parameters { base_level_m: Some(0.0), ..Parameters::default() };
     let collider = Collider::new(&parameters, &Inputs { maps: &maps, ..Inputs::default() });
     let start = DVec3::new(0.0, 1e-4, 0.0);
