@@ -53,25 +53,46 @@ void main() {
         float extinction = 0.0;
         float densest = 0.0;
         float apart = 1.0e30; // of the densities by which a solid's normal is found
-        uint v = 0u;
-        for (; v < volume_count; v++) {
-            take_volume(v);
-            densities[v] = volume_density(point);
-            densest = max(densest, densities[v]);
-            extinction += in_hand.tau_per_m * densities[v];
-            apart = densities[v] > 0.0 ? min(apart, 0.25 * in_hand.step_m) : apart;
-        }
-        is_cut = is_cut || v < volume_count;
-        for (v = 0u; v < volume_count; v++) {
-            take_volume(v);
-            if (densities[v] > 0.0 && in_hand.is_solid != 0u) {
-                float offset_m = 0.25 * in_hand.step_m;
-                previous[v] = volume_density(point - direction * apart);
-                asides[v] = volume_density(point + frames.side * offset_m);
-                aboves[v] = volume_density(point + frames.up * offset_m);
+        // At the point, and for solids behind it, beside it and above it.
+        uint places = 1u;
+        uint at = 0u;
+        do {
+            uint v = 0u;
+            for (; v < volume_count; v++) {
+                take_volume(v);
+                bool is_wanted = true;
+                if (at > 0u) {
+                    is_wanted = densities[v] > 0.0 && in_hand.is_solid != 0u;
+                }
+                if (is_wanted) {
+                    vec3 offset = vec3(0.0);
+                    if (at == 1u) {
+                        offset = -direction * apart;
+                    } else if (at > 1u) {
+                        offset = (at == 2u ? frames.side : frames.up) * (0.25 * in_hand.step_m);
+                    }
+                    float density = volume_density(point + offset);
+                    if (at == 0u) {
+                        densities[v] = density;
+                        densest = max(densest, density);
+                        extinction += in_hand.tau_per_m * density;
+                        if (density > 0.0) {
+                            apart = min(apart, 0.25 * in_hand.step_m);
+                            places = in_hand.is_solid != 0u ? 4u : places;
+                        }
+                    } else if (at == 1u) {
+                        previous[v] = density;
+                    } else if (at == 2u) {
+                        asides[v] = density;
+                    } else {
+                        aboves[v] = density;
+                    }
+                }
             }
-        }
-        is_cut = is_cut || v < volume_count;
+            is_cut = is_cut || v < volume_count;
+            at++;
+        } while (at < places);
+        is_cut = is_cut || at < places;
         if (extinction > 0.0) {
             vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
             sum += vec4(emission, extinction);

@@ -84,10 +84,24 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     for (v = 0u; v < volume_count; v++) {
                         take_volume(v);
                         if (densities[v] > 0.0 && in_hand.is_solid != 0u) {
-                            float offset_m = 0.25 * in_hand.step_m;
-                            previous[v] = volume_density(point - direction * apart);
-                            asides[v] = volume_density(point + frames.side * offset_m);
-                            aboves[v] = volume_density(point + frames.up * offset_m);
+                            // Behind, beside and above.
+                            uint place = 0u;
+                            do {
+                                vec3 offset = -direction * apart;
+                                if (place > 0u) {
+                                    offset = (place == 1u ? frames.side : frames.up) * (0.25 * in_hand.step_m);
+                                }
+                                float density = volume_density(point + offset);
+                                if (place == 0u) {
+                                    previous[v] = density;
+                                } else if (place == 1u) {
+                                    asides[v] = density;
+                                } else {
+                                    aboves[v] = density;
+                                }
+                                place++;
+                            } while (place < 3u);
+                            is_cut = is_cut || place < 3u;
                             evaluations += 3u;
                         }
                     }

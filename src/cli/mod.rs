@@ -151,6 +151,7 @@ fn without_paper(verb: &OsStr, papers: &[Paper]) -> Option<Failure> {
 pub fn umbrella() -> ExitCode {
     watch::keep_ignored();
     gpu::pin_software_threads();
+    gpu::keep_errors_untraced();
     let papers = listed();
     let command = umbrella_command(&papers);
     spelling::learn(&command);
@@ -200,6 +201,7 @@ pub fn umbrella() -> ExitCode {
 pub fn binary<S: Study>() -> ExitCode {
     watch::keep_ignored();
     gpu::pin_software_threads();
+    gpu::keep_errors_untraced();
     // Found by its name: were `Paper::of::<S>` named here, each binary would compile the whole paper once more.
     let Some(paper) = listed().into_iter().find(|paper| paper.name == S::PAPER) else {
         outcome::say(&format!("{} is not in the list of papers; add it there (src/papers/mod.rs)", S::PAPER));

@@ -189,7 +189,7 @@ pub fn draw<S: Study>(
             !interrupted().load(Ordering::Relaxed)
         };
         if interrupted().load(Ordering::Relaxed)
-            || !picture::advance(&mut machine, &mut built.paper, number, is_wanted)?
+            || !picture::advance(interrupted(), &mut machine, &mut built.paper, number, is_wanted)?
         {
             return Ok(None);
         }

@@ -67,6 +67,7 @@
 //!   another's writes wants a recording of its own, such as another call of [`Frame::compute`] with the same pass.
 
 pub mod access;
+mod backtraces;
 mod barrier;
 pub mod bindings;
 pub mod buffer;
@@ -114,6 +115,7 @@ pub mod transfer;
 mod work;
 
 pub use access::{Access, Stages};
+pub use backtraces::keep_errors_untraced;
 pub use buffer::{Buffer, BufferDesc, BufferView, Location};
 pub use capture::RenderDoc;
 pub use device::Device;

@@ -13,7 +13,7 @@ use super::live::Kind;
 use super::pass_info::Binary;
 use super::physical::{Feature, PhysicalDevice};
 use crate::content;
-use crate::shader_build::{self, EMBEDDED, Interface, Stage};
+use crate::shader_build::{self, EMBEDDED, Interface, Stage, embedded_interface};
 
 pub use crate::shader_build::Compiler;
 
@@ -68,29 +68,31 @@ impl ShaderLibrary {
     /// Loads one shader as `compiler` made it, or glslang where naga makes none.
     pub(crate) fn module_by(&self, name: &str, compiler: Compiler) -> Result<Arc<ShaderModule>, Error> {
         let problem = |problem: String| Error::Shader { name: name.to_owned(), problem };
-        let (glslang, naga): (Cow<'_, [u32]>, Option<Cow<'_, [u32]>>) =
+        // The interface is glslang's for both: naga's names are gone, and the build has checked the two alike.
+        let (glslang, naga, interface): (&[u32], Option<&[u32]>, _) =
             if let Some(shader) = self.replaced.iter().find(|s| s.name == name) {
-                (Cow::Borrowed(&shader.glslang[..]), shader.naga.as_deref().ok().map(Cow::Borrowed))
-            } else if let Some(shader) = EMBEDDED.iter().find(|s| s.name == name) {
-                (Cow::Borrowed(shader.glslang), shader.naga.ok().map(Cow::Borrowed))
+                let interface = Interface::reflect(&shader.glslang).map(Cow::Owned);
+                (&shader.glslang, shader.naga.as_deref().ok(), interface)
+            } else if let Some(place) = EMBEDDED.iter().position(|s| s.name == name) {
+                let shader = &EMBEDDED[place];
+                (shader.glslang, shader.naga.ok(), embedded_interface(place).map(Cow::Borrowed))
             } else {
                 return Err(problem("no such shader is built in".into()));
             };
-        // The interface is glslang's for both: naga's names are gone, and the build has checked the two alike.
-        let interface = Interface::reflect(&glslang).map_err(|e| problem(e.to_string()))?;
+        let interface = interface.map_err(|e| problem(e.to_string()))?;
         let (words, compiler) = match (compiler, naga) {
             (Compiler::Naga, Some(words)) => (words, Compiler::Naga),
             _ => (glslang, Compiler::Glslang),
         };
-        if let Some(capability) = unknown_capability(&words, self.device.physical()) {
+        if let Some(capability) = unknown_capability(words, self.device.physical()) {
             return Err(problem(format!("it wants SPIR-V capability {capability}, with which no device is opened")));
         }
         // Each wants a feature or an extension of the device, some of them no capability.
-        if let Some(extension) = shader_build::extensions(&words).next() {
+        if let Some(extension) = shader_build::extensions(words).next() {
             return Err(problem(format!("it wants SPIR-V extension {extension}, with which no device is opened")));
         }
         let sha256 = content::sha256(&words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<_>>());
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: the words are a SPIR-V module that one of the two compilers wrote, of capabilities that the device was
         // opened with; they outlive the call.
         let raw =
@@ -105,7 +107,7 @@ impl ShaderLibrary {
             compiler,
             sha256,
             bytes: 4 * words.len() as u64,
-            instructions: shader_build::instruction_count(&words),
+            instructions: shader_build::instruction_count(words),
         }))
     }
 }
@@ -139,7 +141,7 @@ pub struct ShaderModule {
     /// Path under `shaders/`.
     pub name: String,
     /// Bindings, inputs, outputs and push constants.
-    pub interface: Interface,
+    pub interface: Cow<'static, Interface>,
     /// The compiler of the binary.
     pub compiler: Compiler,
     sha256: String,

@@ -45,7 +45,7 @@ pub fn for_another_process(command: &mut Command) {
 }
 
 /// True when the system tells that this process has one thread; only Linux does.
-fn is_only_thread() -> bool {
+pub(super) fn is_only_thread() -> bool {
     cfg!(target_os = "linux") && std::fs::read_dir("/proc/self/task").is_ok_and(|threads| threads.count() == 1)
 }
 

@@ -8,19 +8,24 @@ use ash::vk;
 use super::error::Error;
 use super::machine::Machine;
 use crate::gpu::bindings::Resource;
-use crate::gpu::{Device, Mode, transfer};
+use crate::gpu::{self, Device, Mode, transfer};
 use crate::image::{Raster, Rgba8};
 use crate::measure::{Kind, Paper, Target};
 
-/// Steps of a state in one submission.
+/// Steps of a state in one frame of the recorder.
 const STEPS: u32 = 128;
 
+/// Nothing interrupts.
+pub static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// Brings a paper's state to where frame `number` can be recorded, in submissions of bounded length; `proceed` is told
-/// the steps that are left after each and says whether to go on. False when it did not.
+/// the steps that are left after some of them and says whether to go on. False when it did not, or once `interrupted` was set
+/// between two submissions: the state is then to be restarted.
 ///
 /// # Errors
 /// [`Error::Gpu`].
 pub fn advance(
+    interrupted: &AtomicBool,
     machine: &mut Machine,
     paper: &mut dyn Paper,
     number: u32,
@@ -28,10 +33,14 @@ pub fn advance(
 ) -> Result<bool, Error> {
     loop {
         let mut left = 0;
-        machine.recorder.run(Mode::Plain, |frame| {
+        let stepped = machine.recorder.run_unless(interrupted, Mode::Plain, |frame| {
             left = paper.advance(frame, number, STEPS)?;
             Ok::<(), Error>(())
-        })?;
+        });
+        match stepped {
+            Err(Error::Gpu(gpu::Error::Interrupted)) => return Ok(false),
+            other => other?,
+        };
         if left == 0 {
             return Ok(true);
         }
@@ -46,7 +55,6 @@ pub fn advance(
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
-    static NEVER: AtomicBool = AtomicBool::new(false);
     render_unless(&NEVER, machine, paper, number)
 }
 
@@ -60,7 +68,9 @@ pub fn render_unless(
     paper: &mut dyn Paper,
     number: u32,
 ) -> Result<Rgba8, Error> {
-    advance(machine, paper, number, |_| true)?;
+    if !advance(interrupted, machine, paper, number, |_| true)? {
+        return Err(gpu::Error::Interrupted.into());
+    }
     loop {
         machine.recorder.run_unless(interrupted, Mode::Plain, |frame| paper.record_picture(frame, number))?;
         if paper.settle(&machine.shaders)? {

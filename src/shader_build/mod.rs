@@ -74,7 +74,7 @@ use sha2::{Digest, Sha256};
 
 pub use agreement::check_same_interface;
 #[cfg(embedded_shaders)]
-pub use embedded::EMBEDDED;
+pub use embedded::{EMBEDDED, embedded_interface};
 pub use error::{DirectiveProblem, Error, InterfaceMismatch, ReflectError};
 pub use exceptions::{NAGA_EXCEPTIONS, check_exceptions};
 pub use include::Source;

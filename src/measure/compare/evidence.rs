@@ -4,7 +4,8 @@
 //! so that the noise of frames counts once, as it shows between processes; what a clock's steps hide does not show there, and
 //! is added. Sides that were measured in turn, in blocks
 //! A B B A, give one difference a block, in which drift cancels: the signed ranks of Wilcoxon compare those, exactly,
-//! whatever their distribution, and steps of the clock rate weigh no more than any other outlier.
+//! whatever their distribution, and steps of the clock rate weigh no more than any other outlier; what lies within the steps of
+//! the clocks that tell the times speaks for neither side.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -13,8 +14,9 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub enum Evidence {
     /// Estimate, its standard error, the part of that which the steps of the clocks make, and its degrees of freedom.
     Welch { estimate: f64, error: f64, rounding: f64, freedom: f64 },
-    /// Means of all pairs of block differences, ascending (Walsh averages), and the number of blocks.
-    SignedRanks { walsh: Vec<f64>, blocks: usize },
+    /// Means of all pairs of block differences, ascending (Walsh averages), the number of blocks, and by how much the steps of
+    /// the clocks can have moved each mean at most.
+    SignedRanks { walsh: Vec<f64>, blocks: usize, rounding: f64 },
 }
 
 impl Evidence {
@@ -41,6 +43,12 @@ impl Evidence {
 
     /// Compares sides that were measured in blocks, by each block's difference of logarithms. Absent with fewer than two.
     pub fn signed_ranks(differences: &[f64]) -> Option<Self> {
+        Self::signed_ranks_of_steps(differences, [0.0; 2])
+    }
+
+    /// The same of medians that clocks have rounded, A's and B's to steps of these fractions of them: each may be off by half a
+    /// step, all of them alike.
+    pub fn signed_ranks_of_steps(differences: &[f64], steps: [f64; 2]) -> Option<Self> {
         if differences.len() < 2 {
             return None;
         }
@@ -49,7 +57,7 @@ impl Evidence {
             walsh.extend(differences[index..].iter().map(|second| 0.5 * (first + second)));
         }
         walsh.sort_by(f64::total_cmp);
-        Some(Evidence::SignedRanks { walsh, blocks: differences.len() })
+        Some(Evidence::SignedRanks { walsh, blocks: differences.len(), rounding: 0.5 * (steps[0] + steps[1]) })
     }
 
     /// The estimated ln(B / A): a difference of means, or the median of the Walsh averages (Hodges and Lehmann).
@@ -67,9 +75,9 @@ impl Evidence {
     pub fn p_above(&self, bound: f64) -> f64 {
         match self {
             Evidence::Welch { estimate, error, freedom, .. } => upper_tail((estimate - bound) / error, *freedom),
-            Evidence::SignedRanks { walsh, blocks } => {
-                // A Walsh average that equals the bound speaks for neither side.
-                let above = walsh.iter().filter(|average| **average > bound).count();
+            Evidence::SignedRanks { walsh, blocks, rounding } => {
+                // A Walsh average that may equal the bound speaks for neither side.
+                let above = walsh.iter().filter(|average| **average - rounding > bound).count();
                 tail_of_ranks(*blocks, above)
             }
         }
@@ -79,8 +87,8 @@ impl Evidence {
     pub fn p_below(&self, bound: f64) -> f64 {
         match self {
             Evidence::Welch { estimate, error, freedom, .. } => upper_tail((bound - estimate) / error, *freedom),
-            Evidence::SignedRanks { walsh, blocks } => {
-                let below = walsh.iter().filter(|average| **average < bound).count();
+            Evidence::SignedRanks { walsh, blocks, rounding } => {
+                let below = walsh.iter().filter(|average| **average + rounding < bound).count();
                 tail_of_ranks(*blocks, below)
             }
         }
@@ -99,12 +107,12 @@ impl Evidence {
                 let half = quantile(1.0 - 0.5 * error, *freedom) * deviation;
                 [estimate - half, estimate + half]
             }
-            Evidence::SignedRanks { walsh, blocks } => {
+            Evidence::SignedRanks { walsh, blocks, rounding } => {
                 // The k smallest and k greatest averages lie outside, for the greatest k that the error allows.
                 let outside = rank_distribution(*blocks).take_while(|&tail| tail <= 0.5 * error).count();
                 match outside {
                     0 => [f64::NEG_INFINITY, f64::INFINITY],
-                    k => [walsh[k - 1], walsh[walsh.len() - k]],
+                    k => [walsh[k - 1] - rounding, walsh[walsh.len() - k] + rounding],
                 }
             }
         }
@@ -130,15 +138,17 @@ impl Evidence {
                     freedom: (freedom + 2.0) * factor - 2.0,
                 }
             }
-            Evidence::SignedRanks { walsh, blocks } => {
+            Evidence::SignedRanks { walsh, blocks, rounding } => {
                 // A normal law of the same quartiles stands for the averages.
                 let at = |fraction: f64| walsh[((walsh.len() - 1) as f64 * fraction) as usize];
                 let deviation = (at(0.75) - at(0.25)) / 1.349 * std::f64::consts::SQRT_2;
                 let blocks = *blocks as f64 * factor;
+                // As uncertain as a uniform law over all that the steps may have moved it by.
+                let rounding = rounding / 3.0_f64.sqrt();
                 Evidence::Welch {
                     estimate: self.estimate(),
-                    error: deviation / blocks.sqrt(),
-                    rounding: 0.0,
+                    error: (deviation / blocks.sqrt()).hypot(rounding),
+                    rounding,
                     freedom: (blocks - 1.0).max(1.0),
                 }
             }

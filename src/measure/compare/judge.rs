@@ -76,17 +76,16 @@ impl Times {
 
     fn evidence(&self, design: Design) -> Option<Evidence> {
         let (a, b) = (log_medians(&self.a)?, log_medians(&self.b)?);
+        let middle = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+        let [of_a, of_b] = self.steps_ms;
+        let steps = [of_a / middle(&a), of_b / middle(&b)];
         match design {
-            Design::Processes => {
-                let middle = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
-                let [of_a, of_b] = self.steps_ms;
-                Evidence::welch_of_steps(&a, &b, [of_a / middle(&a), of_b / middle(&b)])
-            }
+            Design::Processes => Evidence::welch_of_steps(&a, &b, steps),
             Design::Blocks => {
                 let means =
                     |side: &[f64]| side.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<_>>();
                 let blocks = means(&b).iter().zip(means(&a)).map(|(b, a)| b - a).collect::<Vec<_>>();
-                self.are_whole().then(|| Evidence::signed_ranks(&blocks)).flatten()
+                self.are_whole().then(|| Evidence::signed_ranks_of_steps(&blocks, steps)).flatten()
             }
         }
     }

@@ -107,7 +107,7 @@ impl<S: Study> Side<S> {
             let is_repeated = self.at == At::Drawn(number) && !is_fresh && self.paper.repeat();
             if !is_repeated {
                 self.set_off(number)?;
-                if !picture::advance(machine, &mut self.paper, number, &mut proceed)? {
+                if !picture::advance(&picture::NEVER, machine, &mut self.paper, number, &mut proceed)? {
                     return Ok(None);
                 }
             }
@@ -139,7 +139,7 @@ impl<S: Study> Side<S> {
             return Ok(None);
         }
         self.set_off(number)?;
-        if !picture::advance(machine, &mut self.paper, number, proceed)? {
+        if !picture::advance(&picture::NEVER, machine, &mut self.paper, number, proceed)? {
             return Ok(None);
         }
         self.at = At::Spoiled;

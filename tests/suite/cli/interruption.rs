@@ -226,19 +226,24 @@ fn term_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
     assert_interrupted(&out.path().join("a.json"));
 }
 
-/// A frame of 4e12 weights, which is hours: it is given up half-way.
+/// A frame of 4e12 weights, and the hundred steps to one of a fluid of 200,000 particles, which is minutes and more: they are
+/// given up half-way.
 #[test]
 fn term_ends_a_picture_within_its_frame() {
-    let out = folder();
-    let options = "render --variant gpu-driven --density 4096x4x1024 --radius 0.5 --size 64x48 --image a.png";
-    let mut running = lava(options).on_test_device().inside(out.path()).start();
-    // By then it has begun.
-    wait_until(&mut running, |id| computed_s(id) >= 4);
-    assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
-    let pressed = Instant::now();
-    let ended = running.end();
-    assert!(pressed.elapsed() < SOON, "it took {:?} to end", pressed.elapsed());
-    assert_eq!(ended.status.code(), Some(1), "{}", ended.stderr);
-    assert!(ended.stderr.contains("interrupted before a picture was written"), "{}", ended.stderr);
-    assert_eq!(entries(out.path()), [""; 0]);
+    let of_weights = "--variant gpu-driven --density 4096x4x1024 --radius 0.5";
+    let of_steps = "--simulation sph --particles 200000 --substeps 100 --frame 9";
+    for options in [of_weights, of_steps] {
+        let out = folder();
+        let program = lava("render --size 64x48 --image a.png").args(options);
+        let mut running = program.on_test_device().inside(out.path()).start();
+        // By then it has begun.
+        wait_until(&mut running, |id| computed_s(id) >= 4);
+        assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
+        let pressed = Instant::now();
+        let ended = running.end();
+        assert!(pressed.elapsed() < SOON, "{options}: it took {:?} to end", pressed.elapsed());
+        assert_eq!(ended.status.code(), Some(1), "{options}: {}", ended.stderr);
+        assert!(ended.stderr.contains("interrupted before a picture was written"), "{options}: {}", ended.stderr);
+        assert_eq!(entries(out.path()), [""; 0], "{options}");
+    }
 }

@@ -101,12 +101,13 @@ fn lava_out_of_a_vent_is_followed_over_many_steps() {
     assert_eq!((number(first, "particles"), number(last, "particles")), (2.0, 111.0), "{rows:?}");
 }
 
-/// Every law at every frame, for more than a minute of lava that falls, spreads and comes to rest; it takes about as long.
+/// Every law at every frame, for more than a minute of lava that falls, spreads and comes to rest; it takes twice as long. Beside
+/// other tests its passes, of a millisecond each, cost a fifth less of the processor on the thread that submits them.
 #[test]
 fn four_thousand_particles_hold_their_laws_for_two_thousand_frames() {
     let out = folder();
     let experiment = lava("experiment stability --simulation sph --particles 4000 --frames 2000 --quiet --out .");
-    experiment.on_test_device().inside(out.path()).run().succeeded();
+    experiment.on_test_device().env("LP_NUM_THREADS", "0").inside(out.path()).run().succeeded();
     let table = read_json(&out.path().join("lava-stability.json"));
     let rows = table["table"]["rows"].as_array().unwrap();
     let (first, last) = (&rows[0], &rows[rows.len() - 1]);
