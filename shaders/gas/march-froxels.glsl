@@ -50,9 +50,11 @@ vec4 gas_before(uvec2 pixel, float depth) {
     ivec2 low = ivec2(at);
     ivec2 high = min(low + 1, ivec2(size) - 1);
     vec2 t = at - vec2(low);
-    vec4 top = mix(column_before(low, place), column_before(ivec2(high.x, low.y), place), t.x);
-    vec4 bottom = mix(column_before(ivec2(low.x, high.y), place), column_before(high, place), t.x);
-    return mix(top, bottom, t.y);
+    vec4 columns[4];
+    for (uint i = 0u; i < 4u; i++) {
+        columns[i] = column_before(ivec2((i & 1u) == 0u ? low.x : high.x, i < 2u ? low.y : high.y), place);
+    }
+    return mix(mix(columns[0], columns[1], t.x), mix(columns[2], columns[3], t.x), t.y);
 }
 
 bool ends_at(float transparency) {

@@ -93,6 +93,7 @@ mod pass_info;
 mod performance;
 pub mod physical;
 pub mod pipeline;
+mod pipeline_store;
 mod portability;
 mod profiling_lock;
 pub mod program;

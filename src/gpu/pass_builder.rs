@@ -18,6 +18,7 @@ use super::pass_check;
 use super::pass_info::{PassInfo, PassKind, label};
 use super::physical::Feature;
 use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
+use super::pipeline_store::{PipelineState, RasterState};
 use super::program::Program;
 use super::render_pass::{Blend, DepthTest, Framebuffer, Load, RenderPass, Target, Targets};
 use super::sample::Counts;
@@ -280,7 +281,7 @@ impl PassBuilder {
         };
         let modules = desc.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
         pass_check::stages(device, &desc, &modules)?;
-        let program = Program::new(device, name, modules)?;
+        let program = shaders.pipelines.program(device, name, modules)?;
         let mut desc = desc;
         let wanted = desc.offered.drain(..).filter(|(name, _)| program.slots.iter().any(|slot| slot.name == *name));
         desc.resources.extend(wanted);
@@ -291,17 +292,20 @@ impl PassBuilder {
             }
             None => {}
         }
-        // Named while nobody else has it: passes that are rebound share it, and may be at work on another thread.
-        let name_pipeline = |pipeline: &Pipeline| device.name(pipeline.raw, &label(name, desc.section));
+        // Named while nobody else has it: passes share it, and may be at work on another thread.
+        let named = |pipeline: Arc<Pipeline>| {
+            device.name(pipeline.raw, &label(name, desc.section));
+            pipeline
+        };
+        let state = |modules: &[Arc<ShaderModule>], raster| PipelineState {
+            label: (name, desc.section),
+            shaders: modules.iter().map(|module| module.name.clone()).collect(),
+            raster,
+        };
         if desc.kind == PassKind::Compute {
-            let pipeline = Pipeline::compute(device, name, &program)?;
-            name_pipeline(&pipeline);
-            return finish(
-                shaders,
-                desc,
-                Pipelines { own: pipeline, counting: None, stride_bytes: 0, element_bytes: 0 },
-                None,
-            );
+            let make = || Pipeline::compute(device, name, &program).map(named);
+            let own = shaders.pipelines.pipeline(state(&program.modules, None), make)?;
+            return finish(shaders, desc, Pipelines { own, counting: None, stride_bytes: 0, element_bytes: 0 }, None);
         }
         pass_check::targets(device, &desc, &program)?;
         let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
@@ -311,8 +315,10 @@ impl PassBuilder {
         let targets = &desc.targets;
         let modules = &program.modules;
         let topology = desc.topology;
-        let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
-        name_pipeline(&own);
+        let raster = Some(RasterState::new(targets, &layout, topology));
+        let own = shaders.pipelines.pipeline(state(modules, raster), || {
+            Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology).map(named)
+        })?;
         let counting = match &desc.counting {
             None => None,
             Some((fragment, test)) => {
@@ -324,9 +330,10 @@ impl PassBuilder {
                 if let Some(constants) = desc.constants {
                     (constants.check)(name, &modules)?;
                 }
-                let made =
-                    Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)?;
-                Some(made)
+                let raster = Some(RasterState::new(&targets, &layout, topology));
+                Some(shaders.pipelines.pipeline(state(&modules, raster), || {
+                    Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)
+                })?)
             }
         };
         let pipelines =

@@ -12,18 +12,22 @@ use super::error::{Context, Error};
 use super::live::Kind;
 use super::pass_info::Binary;
 use super::physical::{Feature, PhysicalDevice};
+use super::pipeline_store::PipelineStore;
 use crate::content;
 use crate::shader_build::{self, EMBEDDED, Interface, Stage, embedded_interface};
 
 pub use crate::shader_build::Compiler;
 
-/// The shaders embedded in the program, or those of a directory compiled at start in their place.
+/// The shaders embedded in the program, or those of a directory compiled at start in their place, and the modules and
+/// pipelines that passes have made of them.
 pub struct ShaderLibrary {
     device: Arc<Device>,
     compiler: Compiler,
     replaced: Vec<shader_build::CompiledShader>,
     /// Folder that they are from; empty without.
     folder: String,
+    /// Modules, programs and pipelines of its shaders.
+    pub(super) pipelines: PipelineStore,
 }
 
 impl ShaderLibrary {
@@ -37,7 +41,7 @@ impl ShaderLibrary {
             Some(dir) => replace(dir).map_err(|problem| Error::Shader { name: dir.display().to_string(), problem })?,
         };
         let folder = replacements.map_or_else(String::new, |dir| dir.display().to_string());
-        Ok(ShaderLibrary { device: device.clone(), compiler, replaced, folder })
+        Ok(ShaderLibrary { device: device.clone(), compiler, replaced, folder, pipelines: PipelineStore::default() })
     }
 
     /// Names the shader folder where a pass that could not be built of the built-in shaders' counterparts may be its
@@ -57,6 +61,17 @@ impl ShaderLibrary {
         &self.device
     }
 
+    /// Objects that the library keeps for passes to come, by kind: what is alive beside buffers and the like once all passes
+    /// are gone.
+    pub fn kept(&self) -> [(Kind, usize); 4] {
+        self.pipelines.kept()
+    }
+
+    /// Forgets the modules and pipelines that were made: the next passes make theirs again, as the first time.
+    pub fn forget_pipelines(&self) {
+        self.pipelines.clear();
+    }
+
     /// Loads one shader by its path under `shaders/`.
     ///
     /// # Errors
@@ -67,6 +82,10 @@ impl ShaderLibrary {
 
     /// Loads one shader as `compiler` made it, or glslang where naga makes none.
     pub(crate) fn module_by(&self, name: &str, compiler: Compiler) -> Result<Arc<ShaderModule>, Error> {
+        self.pipelines.module(name, compiler, || self.make_module(name, compiler))
+    }
+
+    fn make_module(&self, name: &str, compiler: Compiler) -> Result<Arc<ShaderModule>, Error> {
         let problem = |problem: String| Error::Shader { name: name.to_owned(), problem };
         // The interface is glslang's for both: naga's names are gone, and the build has checked the two alike.
         let (glslang, naga, interface): (&[u32], Option<&[u32]>, _) =

@@ -170,6 +170,8 @@ fn build_as<S: Study>(
     variant: S::Variant,
     label: &str,
 ) -> Result<Built<S>, Error> {
+    // What it costs to make it holds every pipeline of its own, also those that a variant before it has made.
+    machine.shaders.forget_pipelines();
     let live = Arc::clone(machine.device.live());
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();

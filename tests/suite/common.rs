@@ -9,7 +9,7 @@ use std::{env, iter, mem, thread};
 
 use fumarole::gpu::live::Kind;
 use fumarole::gpu::physical::choose;
-use fumarole::gpu::{Device, Error, Instance, PhysicalDevice};
+use fumarole::gpu::{Compiler, Device, Error, Instance, PhysicalDevice, ShaderLibrary};
 
 /// Index, UUID or part of the name of the device that the tests run on.
 const DEVICE_VARIABLE: &str = "FUMAROLE_TEST_DEVICE";
@@ -67,8 +67,48 @@ fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
         panic::resume_unwind(failure);
     }
     assert!(messages.is_empty(), "{} validation message(s):\n{}", messages.len(), messages.join("\n"));
-    assert_eq!(device.live().alive(), [(Kind::Instance, 1), (Kind::Device, 1)], "objects left alive");
+    assert_eq!(alive_beside_kept(device), [(Kind::Instance, 1), (Kind::Device, 1)], "objects left alive");
     assert_eq!(device.live().memory(), [], "memory left allocated");
+}
+
+/// The built-in shaders of the pool's devices, with the pipelines that tests have made: the next test compiles none of them
+/// again.
+static LIBRARIES: Mutex<Vec<(Compiler, Arc<ShaderLibrary>)>> = Mutex::new(Vec::new());
+
+/// Most pipelines that a library keeps from one test to the next.
+const MOST_KEPT: usize = 300;
+
+/// The built-in shaders as a compiler made them.
+pub fn shaders_by(device: &Arc<Device>, compiler: Compiler) -> Arc<ShaderLibrary> {
+    let libraries = LIBRARIES.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_it =
+        |(by, library): &&(Compiler, Arc<ShaderLibrary>)| *by == compiler && Arc::ptr_eq(library.device(), device);
+    match libraries.iter().find(is_it) {
+        Some((_, library)) => library.clone(),
+        // A device of the test's own.
+        None => new_library(device, compiler),
+    }
+}
+
+fn new_library(device: &Arc<Device>, compiler: Compiler) -> Arc<ShaderLibrary> {
+    Arc::new(ShaderLibrary::new(device, compiler, None).expect("no folder is compiled"))
+}
+
+/// Live objects by kind, but for those that libraries keep.
+fn alive_beside_kept(device: &Arc<Device>) -> Vec<(Kind, usize)> {
+    let mut alive = device.live().alive();
+    for compiler in [Compiler::Glslang, Compiler::Naga] {
+        let library = shaders_by(device, compiler);
+        let kept = library.kept();
+        for (kind, count) in &mut alive {
+            *count -= kept.iter().find(|(of, _)| of == kind).map_or(0, |(_, kept)| *kept);
+        }
+        if kept.iter().any(|(_, kept)| *kept > MOST_KEPT) {
+            library.forget_pipelines();
+        }
+    }
+    alive.retain(|(_, count)| *count > 0);
+    alive
 }
 
 /// The devices of the tests, opened together before the first of them works.
@@ -96,6 +136,11 @@ impl Lent {
                     })
                 };
                 pool.idle = iter::repeat_with(open).take(count).collect();
+                let of_each = |device| {
+                    [Compiler::Glslang, Compiler::Naga].map(|compiler| (compiler, new_library(device, compiler)))
+                };
+                let mut libraries = LIBRARIES.lock().unwrap_or_else(PoisonError::into_inner);
+                libraries.extend(pool.idle.iter().flat_map(of_each));
             }
             if let Some(device) = pool.idle.pop() {
                 pool.lent += 1;

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
-use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{BlockCounts, Burning, Counts, Look, Parameters, Variant, VertexState};
@@ -56,7 +57,7 @@ impl Fire {
         mesh: &Mesh,
     ) -> Self {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let shaders = shaders_by(device, compiler);
         let paper = Burning::new(&shaders, "test", variant, parameters, mesh).unwrap();
         Fire { paper, recorder: Recorder::new(device).unwrap(), device: device.clone() }
     }

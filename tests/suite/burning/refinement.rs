@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
-use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::{Model, tree};
 use fumarole::papers::burning::{Burning, Counts, Parameters, Variant, VertexState};
@@ -14,7 +14,7 @@ use fumarole::scene::{Camera, Mesh};
 use glam::Vec3;
 
 use super::fire::text;
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// A fire that crosses the object in about 180 ticks and leaves holes soon after.
 fn parameters() -> Parameters {
@@ -51,7 +51,7 @@ impl Fire {
         mesh: &Mesh,
     ) -> Self {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let shaders = shaders_by(device, compiler);
         let burning = Burning::new(&shaders, "test", variant, parameters, mesh).unwrap();
         Fire { burning, recorder: Recorder::new(device).unwrap(), device: device.clone(), next: 0 }
     }

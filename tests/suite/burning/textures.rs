@@ -12,7 +12,7 @@ use fumarole::scene::{Mesh, shapes};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 
 use super::fire::{Fire, text};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
@@ -212,7 +212,7 @@ fn a_mesh_without_coordinates_takes_no_texture() {
     let (_, dot) = texture(1, 1, |_, _| [188; 3]);
     let mesh = Mesh { texture_coordinates: Vec::new(), ..shapes::cuboid() };
     gpu_test(|device| {
-        let shaders = fumarole::gpu::ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let made = fumarole::papers::burning::Burning::new(&shaders, "test", Variant::Shell, &covered(&dot), &mesh);
         let error = made.err().unwrap().to_string();
         assert!(error.contains("no texture coordinates"), "{error}");

@@ -3,8 +3,9 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::measure::picture::read_target;
 use fumarole::measure::{Paper, Target};
@@ -50,7 +51,7 @@ impl Drawing {
         receivers: &[ReceiverInput],
     ) -> Self {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let shaders = shaders_by(device, compiler);
         let mut paper = Caustics::new(&shaders, "test", variant, parameters, receivers).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut passes = Vec::new();
@@ -102,7 +103,7 @@ impl Drawing {
 
 /// The planes that smart slicing draws for each receiver under each light.
 pub fn planes_drawn(device: &Arc<Device>, parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<usize> {
-    let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+    let shaders = shaders_by(device, Compiler::Glslang);
     let mut paper = Caustics::new(&shaders, "test", Variant::LevelMapSmart, parameters, receivers).unwrap();
     Recorder::new(device).unwrap().run(Mode::Plain, |frame| paper.record(frame, FRAME)).unwrap();
     paper.plane_counts()

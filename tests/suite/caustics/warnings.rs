@@ -4,7 +4,7 @@
 use std::slice::from_ref;
 use std::sync::Arc;
 
-use fumarole::gpu::{Compiler, Device, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Paper as _;
 use fumarole::measure::study::Study;
 use fumarole::papers::caustics::reference::intersection_triangle;
@@ -18,13 +18,13 @@ use glam::{Mat4, Vec3};
 use super::drawing::Drawing;
 use super::oracle::Oracle;
 use super::scene::{OVERHEAD, floor, parameters};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 const GRAZING: Light = Light::Parallel { direction: Vec3::new(1.0, -0.3, 0.2), intensity: Vec3::ONE };
 
 fn warnings(device: &Arc<Device>, variant: Variant, parameters: &Parameters, receiver: &ReceiverInput) -> Vec<String> {
     parameters.validate().unwrap();
-    let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+    let shaders = shaders_by(device, Compiler::Glslang);
     Caustics::new(&shaders, "test", variant, parameters, from_ref(receiver)).unwrap().warnings()
 }
 

@@ -56,7 +56,7 @@ const CAUSTICS_SMART: Paper =
 const BURNING: Paper = Paper {
     program: program::burning,
     variants: "all",
-    scene: "--size 160x120 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10 --mesh sphere --triangles 300 \
+    scene: "--size 160x120 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10 --mesh sphere --triangles 120 \
             --first-frame 30",
     compares_shader_accesses: true,
 };

@@ -74,7 +74,6 @@ fn terrain_looks_the_same() {
     assert_same_pictures(&TERRAIN);
 }
 
-/// A driver against another: a side's environment and device are its own.
 /// The fluid with its heat and its crust, in two processes on each driver.
 #[test]
 fn a_fluid_is_the_same_to_the_bit_on_every_run() {
@@ -129,6 +128,7 @@ fn what_bends_and_falls_is_the_same_to_the_bit_on_every_run() {
     assert!(apart < 1e-3, "bent otherwise by {apart}");
 }
 
+/// A driver against another: a side's environment and device are its own.
 #[test]
 fn it_may_be_a_side_of_ab() {
     let folder = folder();

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::measure::Paper;
 use fumarole::measure::picture::read_target;
@@ -64,7 +65,7 @@ impl Drawing {
         number: u32,
     ) -> Result<Self, Error> {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let shaders = shaders_by(device, compiler);
         let mut gas = Gas::new(&shaders, "test", variant, parameters, objects, None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut runs = 0;

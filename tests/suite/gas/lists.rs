@@ -1,6 +1,6 @@
 //! Fragments: coverage, masks, order, against cutting in double precision.
 
-use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Mode, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::reference::coverage::{area, cut};
@@ -10,7 +10,7 @@ use fumarole::scene::{Camera, Mesh};
 use glam::{DVec2, Vec3};
 
 use super::drawing::Drawing;
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 pub const WIDTH: u32 = 90;
 pub const HEIGHT: u32 = 62;
@@ -238,7 +238,7 @@ fn lists_that_overflow_grow() {
         let triangles: Vec<[Vec3; 3]> =
             (0..9).map(|i| triangle.map(|(x, y)| unproject(DVec2::new(x, y), 2.0 + 0.5 * i as f32))).collect();
         let objects = [Object { opacity: 0.3, ..object(&triangles) }];
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         for (lists, most_runs) in [(Lists::Linked, 2), (Lists::Tiles, 3)] {
             let parameters = Parameters { lists, ..parameters() };
             let expected = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
@@ -267,7 +267,7 @@ fn fragments_of_all_bands_are_counted() {
         let triangles: Vec<[Vec3; 3]> =
             (0..5).map(|i| triangle.map(|(x, y)| unproject(DVec2::new(x, y), 2.0 + 0.5 * i as f32))).collect();
         let objects = [Object { opacity: 0.3, ..object(&triangles) }];
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let whole = Drawing::of(device, Variant::NoVolume, &parameters(), &objects);
         let expected = whole.lists.iter().map(|list| list.len() as u64).sum::<u64>();
         let rows = HEIGHT.div_ceil(3);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Mode, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::gas::model::{DensityFunction, Front, Shape, SolidTexture, Swirl, Volume};
 use fumarole::papers::gas::parameters::Jitter;
@@ -13,7 +13,7 @@ use fumarole::scene::{Camera, Light};
 use glam::{DVec3, Vec3};
 
 use super::drawing::Drawing;
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 pub const WIDTH: u32 = 24;
 pub const HEIGHT: u32 = 16;
@@ -225,7 +225,7 @@ fn solids_are_shaded_by_their_gradient() {
 fn densities_are_counted_in_the_rows_that_are_drawn() {
     gpu_test(|device| {
         let parameters = Parameters { steps: 8, ..parameters(vec![gases()[0]]) };
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let mut gas = Gas::new(&shaders, "test", Variant::None, &parameters, &[], None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut count = |rows: Range<u32>| {

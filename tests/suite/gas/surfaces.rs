@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Error, Feature, PhysicalDevice, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Error, Feature, PhysicalDevice};
 use fumarole::gpu::{Mode, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture};
@@ -17,7 +17,7 @@ use glam::{DVec3, Mat4, Quat, UVec2, Vec2, Vec3};
 
 use super::drawing::Drawing;
 use super::scenes::small;
-use crate::common::{gpu_test, gpu_test_alone};
+use crate::common::{gpu_test, gpu_test_alone, shaders_by};
 
 const WIDTH: u32 = 45;
 const HEIGHT: u32 = 31;
@@ -163,7 +163,7 @@ fn some_rows_are_those_of_the_picture() {
         let row_bytes = 4 * parameters.width as usize;
         for (lists, list_bytes) in [(Lists::Linked, None), (Lists::Tiles, None), (Lists::Nearest(8), Some(40_000))] {
             let parameters = Parameters { lists, list_bytes, ..parameters.clone() };
-            let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+            let shaders = shaders_by(device, Compiler::Glslang);
             let mut recorder = Recorder::new(device).unwrap();
             let mut drawn = |rows: Option<Range<u32>>| {
                 let mut gas = Gas::new(&shaders, "test", Variant::Table, &parameters, &objects, None).unwrap();
@@ -205,7 +205,7 @@ fn a_picture_of_4096_by_4096_is_done_in_bands() {
     gpu_test(|device| {
         let panes = [pane(-3.0, 0.7, Vec3::X), Object { opacity: 0.4, ..pane(-2.5, -0.3, Vec3::Y) }];
         let parameters = Parameters { width: SIDE, height: SIDE, list_bytes: Some(32 << 20), ..parameters() };
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters, &panes, None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut draw = |rows: Range<u32>| {
@@ -240,7 +240,7 @@ fn bands_shrink_until_their_lists_fit() {
         // Four fragments a pixel would be ten rows; there are nine.
         assert!((1..5).contains(&banded.demand.rows), "{:?}", banded.demand);
         assert!(banded.radiance == expected.radiance);
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &bound(4096), &sheets, None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let error = loop {
@@ -288,7 +288,7 @@ fn a_missing_geometry_stage_is_told() {
     gpu_test_alone(|device| {
         let lesser = without_geometry_stages(device);
         let warnings = |device: &Arc<Device>, geometry_stage| {
-            let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+            let shaders = shaders_by(device, Compiler::Glslang);
             let parameters = Parameters { geometry_stage, volumes: vec![default_volume()], ..parameters() };
             Gas::new(&shaders, "test", Variant::None, &parameters, &[], None).unwrap().warnings()
         };

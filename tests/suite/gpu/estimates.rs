@@ -2,13 +2,13 @@
 
 use std::ffi::OsStr;
 
-use fumarole::gpu::{Compiler, ShaderLibrary};
+use fumarole::gpu::Compiler;
 use fumarole::measure::parameter::Given;
 use fumarole::measure::study::Study;
 use fumarole::measure::{Paper, Variant};
 use fumarole::papers::{burning, caustics, gas, lava, terrain};
 
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// Bytes beside the estimate: blocks of constants, alignment, and what the limits of few texels need.
 const SMALL: f64 = 64.0 * 1024.0;
@@ -34,7 +34,7 @@ fn is_estimated<S: Study>(set_ups: &[&str]) {
             let given: Given = words.iter().map(|(name, _)| (*name).to_owned()).collect();
             study.resolve(&given).unwrap();
             let scene = study.load().unwrap();
-            let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+            let shaders = shaders_by(device, Compiler::Glslang);
             for &variant in S::Variant::ALL {
                 let what = format!("{} {} {parameters}", S::PAPER, variant.as_str());
                 let estimate = study.estimate(device, &scene, variant);

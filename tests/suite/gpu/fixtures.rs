@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use ash::vk;
 use bytemuck::Pod;
 use fumarole::gpu::{
@@ -42,8 +43,8 @@ host_block! {
 
 pub const BLACK: Load = Load::Clear([0.0, 0.0, 0.0, 1.0]);
 
-pub fn shaders(device: &Arc<Device>) -> ShaderLibrary {
-    ShaderLibrary::new(device, Compiler::Glslang, None).unwrap()
+pub fn shaders(device: &Arc<Device>) -> Arc<ShaderLibrary> {
+    shaders_by(device, Compiler::Glslang)
 }
 
 /// A colour target that shaders can sample.

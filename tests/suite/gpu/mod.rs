@@ -8,6 +8,7 @@ mod first_pass;
 mod first_passes;
 mod fixtures;
 mod indirect;
+mod kept_pipelines;
 mod loops;
 mod memory;
 mod memory_model;

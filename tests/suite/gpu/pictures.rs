@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use ash::vk;
-use fumarole::gpu::{Blend, Compiler, Device, Feature, Load, Mode, Pass, ShaderLibrary};
+use fumarole::gpu::{Blend, Compiler, Device, Feature, Load, Mode, Pass};
 
 use super::fixtures::{BLACK, Paint, Range, color_target, run, shaders, storage_buffer, texels, values};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// Not square, and such that no texel's centre lies on an edge of the triangle.
 const WIDTH: usize = 24;
@@ -17,7 +17,7 @@ fn draw_asymmetric(device: &Arc<Device>, compiler: Compiler) -> Vec<[f32; 4]> {
     let target = color_target(device, "asymmetric", vk::Format::R32G32B32A32_SFLOAT, WIDTH as u32, HEIGHT as u32);
     let pass = Pass::graphics("asymmetric", "", "test/asymmetric.vert", "test/asymmetric.frag")
         .color(&target, BLACK, Blend::Replace)
-        .build(&ShaderLibrary::new(device, compiler, None).unwrap())
+        .build(&shaders_by(device, compiler))
         .unwrap();
     assert_eq!(pass.info().compiler, Some(compiler));
     run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| draw.vertices(3))).unwrap();
@@ -91,7 +91,7 @@ fn a_kernel_computes_the_same_with_both_compilers() {
                 .constants::<Range>()
                 .with("Values", &buffer)
                 .with("Sums", &sums)
-                .build(&ShaderLibrary::new(device, compiler, None).unwrap())
+                .build(&shaders_by(device, compiler))
                 .unwrap();
             assert_eq!(pass.info().compiler, Some(compiler));
             run(device, Mode::Plain, |frame| {
@@ -171,7 +171,7 @@ fn the_blend_states_do_what_they_say() {
 fn every_embedded_shader_is_a_valid_module_with_both_compilers() {
     gpu_test(|device| {
         for compiler in [Compiler::Glslang, Compiler::Naga] {
-            let library = ShaderLibrary::new(device, compiler, None).unwrap();
+            let library = shaders_by(device, compiler);
             for shader in fumarole::shader_build::EMBEDDED {
                 let module = library.module(shader.name).unwrap();
                 let expected = if shader.naga.is_ok() { compiler } else { Compiler::Glslang };

@@ -9,7 +9,7 @@ use fumarole::gpu::{
 use fumarole::host_block;
 
 use super::fixtures::{BLACK, color_target, run, shaders, texels};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 host_block! {
     /// `test/splat-point.vert` and `test/splat-strip.vert`
@@ -87,7 +87,7 @@ fn geometry_stages_and_instanced_strips_draw_the_same_quads() {
 #[test]
 fn a_pass_with_a_geometry_stage_runs_one_compiler() {
     gpu_test(|device| {
-        let naga = ShaderLibrary::new(device, Compiler::Naga, None).unwrap();
+        let naga = shaders_by(device, Compiler::Naga);
         assert_eq!(drawn(device, &naga, true).1, Compiler::Glslang);
         assert_eq!(drawn(device, &naga, false).1, Compiler::Naga);
     });

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fumarole::gpu::{Compiler, Device, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Paper;
 use fumarole::papers::lava::{
     CAMERAS, Kept, Lava, Parameters, Particles, Rock, SplatCulling, SplatShading, SplatShape, Variant,
@@ -12,7 +12,7 @@ use glam::Vec3;
 
 use super::pictures::reduced;
 use super::scene::{draw, lava, parameters, texels};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// The figures' cameras, and from low down, from inside the lava, from below, from above one end, and looking away.
 fn cameras() -> Vec<(&'static str, Camera)> {
@@ -127,7 +127,7 @@ fn both_compilers_cull_alike() {
             let low = Camera { eye: Vec3::new(1.0, 0.9, 3.0), target: Vec3::new(0.3, 0.2, 0.5), ..CAMERAS[0].1 };
             let parameters =
                 Parameters { geometry_stage: false, culling: SplatCulling::Facing, camera: low, ..parameters() };
-            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let shaders = shaders_by(device, compiler);
             let particles = Particles::seeded(&parameters);
             let mut lava =
                 Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fumarole::gpu::{Compiler, Device, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::Splats;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SplatShading, Variant};
@@ -12,7 +12,7 @@ use super::march::direction;
 use super::pictures::reduced;
 use super::scene::{draw, lava, parameters, texels};
 use super::splatting::{low_camera, ridge, stage};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 fn deferred() -> Parameters {
     Parameters { splat_shading: SplatShading::Deferred, camera: low_camera(), width: 320, height: 240, ..parameters() }
@@ -140,7 +140,7 @@ fn both_compilers_shade_alike() {
         let pictures = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
             let parameters =
                 Parameters { geometry_stage: false, splat_shading: SplatShading::Deferred, ..parameters() };
-            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let shaders = shaders_by(device, compiler);
             let particles = Particles::seeded(&parameters);
             let mut lava =
                 Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();

@@ -1,14 +1,14 @@
 //! Whole frames: pass order, replay, both ways to make splats, both compilers.
 
 use fumarole::gpu::bindings::Resource;
-use fumarole::gpu::{Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder};
 use fumarole::measure::Paper;
 use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Variant};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
 use super::scene::{draw, lava, parameters, texels};
-use crate::common::{gpu_test, gpu_test_alone};
+use crate::common::{gpu_test, gpu_test_alone, shaders_by};
 
 #[test]
 fn passes_run_in_the_order_of_the_thesis() {
@@ -133,7 +133,7 @@ fn both_compilers_draw_one_picture() {
     gpu_test(|device| {
         let pictures = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
             let parameters = Parameters { geometry_stage: false, ..parameters() };
-            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let shaders = shaders_by(device, compiler);
             let particles = Particles::seeded(&parameters);
             let mut lava =
                 Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();
@@ -147,7 +147,7 @@ fn both_compilers_draw_one_picture() {
 
         // With a geometry stage every stage of the pass is glslang's, and the record says so.
         let parameters = parameters();
-        let shaders = ShaderLibrary::new(device, Compiler::Naga, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Naga);
         let particles = Particles::seeded(&parameters);
         let mut lava =
             Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::transfer::read_buffer;
-use fumarole::gpu::{Buffer, Compiler, Device, PassKind, ShaderLibrary, Track};
+use fumarole::gpu::{Buffer, Compiler, Device, PassKind, Track};
 use fumarole::image::Rgba8;
 use fumarole::image::golden;
 use fumarole::measure::Paper;
@@ -19,7 +19,7 @@ use glam::{DVec3, Vec3};
 
 use super::pictures::{TOLERANCE, reduced};
 use super::scene::{clamped, densities, draw, driven, grid, parameters, texels, variant_of};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 fn method(lava: &Lava) -> &GpuDriven {
     match &lava.method {
@@ -227,7 +227,7 @@ fn both_compilers_gather_the_same() {
     gpu_test(|device| {
         let parameters = Parameters { geometry_stage: false, ..parameters() };
         let heights = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
-            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let shaders = shaders_by(device, compiler);
             let particles = Particles::seeded(&parameters);
             let rock = Rock::built_in();
             let mut lava = Lava::new(&shaders, "test", Variant::GpuDriven, &parameters, &particles, rock, &[]).unwrap();

@@ -1,6 +1,6 @@
 //! Rays against the height field, pixel by pixel, beside the oracle's.
 
-use fumarole::gpu::{Compiler, ShaderLibrary};
+use fumarole::gpu::Compiler;
 use fumarole::measure::Paper;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceDraw, Variant, depth_range_m};
 use fumarole::scene::{Camera, shapes};
@@ -8,7 +8,7 @@ use glam::{DVec3, Mat4, Vec3};
 
 use super::scene::{draw, parameters, texels};
 use super::splatting::{low_camera, ridge, stage};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// Direction of the ray through a pixel's middle, its length along the view 1.
 pub(super) fn direction(parameters: &Parameters, at: usize) -> DVec3 {
@@ -98,7 +98,7 @@ fn objects_mix_with_a_marched_surface() {
             let sphere = shapes::sphere(96, 96);
             let scale = 2.0 * radius / sphere.bounds().diagonal().max_element();
             let ball = sphere.transformed(&(Mat4::from_translation(center) * Mat4::from_scale(Vec3::splat(scale))));
-            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let shaders = shaders_by(device, compiler);
             let picture = |objects: &[_]| {
                 let particles = Particles::seeded(&parameters);
                 let mut lava =

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, FrameSample, ImageView, Mode, Recorder, ShaderLibrary};
@@ -25,8 +26,8 @@ pub fn parameters() -> Parameters {
     }
 }
 
-pub fn shaders(device: &Arc<Device>) -> ShaderLibrary {
-    ShaderLibrary::new(device, Compiler::Glslang, None).unwrap()
+pub fn shaders(device: &Arc<Device>) -> Arc<ShaderLibrary> {
+    shaders_by(device, Compiler::Glslang)
 }
 
 /// The paper with its seeded particles and the built-in rock.

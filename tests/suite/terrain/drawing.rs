@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
@@ -38,7 +39,7 @@ impl Drawing {
 /// Draws one terrain from one place after the other.
 pub struct Painter {
     device: Arc<Device>,
-    shaders: ShaderLibrary,
+    shaders: Arc<ShaderLibrary>,
     pub paper: Terrain,
     recorder: Recorder,
 }
@@ -52,7 +53,7 @@ impl Painter {
         inputs: &Inputs<'_>,
     ) -> Self {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let shaders = shaders_by(device, compiler);
         Painter {
             device: device.clone(),
             paper: Terrain::new(&shaders, "test", variant, parameters, inputs).unwrap(),

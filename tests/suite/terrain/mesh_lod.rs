@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fumarole::gpu::{Compiler, Device, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device};
 use fumarole::papers::terrain::reference::{Part, Ray, Square};
 use fumarole::papers::terrain::{
     Base, Bound, Cover, Ground, Inputs, Interpolation, Levels, Origin, PATCH_SIDE, Parameters, Patch, Quadtree, Rays,
@@ -18,14 +18,14 @@ use super::maps::{adversaries, ridges};
 use super::silhouette::{Silhouette, is_land};
 use super::variants::assert_agree;
 use super::world::{Relief, Stand, World, random_map};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 const BASES: [Base; 3] =
     [Base::Plane, Base::Cylinder { radius_m: 40_000.0 }, Base::Ellipsoid { equatorial_m: 60_000.0, polar_m: 50_000.0 }];
 const SIZE: (u32, u32) = (160, 120);
 
 fn tree(device: &Arc<Device>, compiler: Compiler, map: &HeightMap, base: f64) -> Quadtree {
-    let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+    let shaders = shaders_by(device, compiler);
     let levels = Levels::new(&shaders, "test", map, &[Bound::Highest], Cover::Nodes).unwrap();
     Quadtree::new(&shaders, "test", &levels, base).unwrap()
 }

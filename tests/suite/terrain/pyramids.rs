@@ -1,12 +1,12 @@
 //! The multilevel altitude map, built by both processors.
 
+use fumarole::gpu::Compiler;
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, ShaderLibrary};
 use fumarole::papers::terrain::{Bound, Cover, Interpolation, Levels, Pyramid, Shape, Texel};
 use fumarole::scene::random::Random;
 use fumarole::scene::{HeightMap, Samples};
 
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 const BOUNDS: [Bound; 2] = [Bound::Highest, Bound::Lowest];
 
@@ -33,7 +33,7 @@ fn assert_identical<T: Texel + bytemuck::Pod + std::fmt::Debug>(shape: Shape, da
 #[test]
 fn the_device_builds_the_same_levels_bit_for_bit() {
     gpu_test(|device| {
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let mut random = Random::new(7);
         for (width, height) in [(2, 2), (3, 2), (129, 65), (64, 64), (2, 300), (301, 97)] {
             let shape = Shape::new(width, height);
@@ -59,7 +59,7 @@ fn the_device_builds_the_same_levels_bit_for_bit() {
 #[test]
 fn levels_of_cells_bound_what_their_surface_reads() {
     gpu_test(|device| {
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let mut random = Random::new(8);
         for (width, height) in [(2, 2), (3, 2), (65, 33), (64, 40), (2, 70), (51, 97)] {
             let shape = Shape::new(width, height);

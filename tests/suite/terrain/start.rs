@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Mode, Recorder};
 use fumarole::image::Samples;
 use fumarole::measure::Paper;
 use fumarole::measure::picture::read_target;
@@ -15,7 +15,7 @@ use glam::{DVec2, Vec3};
 
 use super::drawing::{Drawing, Painter};
 use super::maps::{adversaries, alone, ridges, volcano};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, shaders_by};
 
 /// Neither side is a multiple of a tile's.
 const SIZE: (u32, u32) = (107, 83);
@@ -116,7 +116,7 @@ fn a_tile_ends_before_its_rays_meet_the_land() {
     let view = camera([0.0, 7000.0, 19_000.0], [0.0, 2000.0, 0.0]);
     gpu_test(|device| {
         let maps = alone(rough.clone());
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = shaders_by(device, Compiler::Glslang);
         let inputs = Inputs { maps: &maps, ..Inputs::default() };
         let parameters = parameters(view, Start::Tiles, Lod::Exact, Interpolation::Bilinear);
         let truth = Drawing::of(device, Variant::GpuFragment, &parameters, &maps);
