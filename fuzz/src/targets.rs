@@ -5,7 +5,12 @@ use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fumarole::measure::compare::{self, Comparison, Input, Options};
 use fumarole::papers::burning;
+use fumarole::papers::terrain::experiments::bodies;
+use fumarole::report::html::{self, Contents, TableSource};
+use fumarole::report::stress::StressRecord;
+use fumarole::report::tables::Tables;
 use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, RowSource, Rows, load_voxels, world_file};
 use fumarole::{cli, image, report, shader_build};
 
@@ -13,7 +18,7 @@ use fumarole::{cli, image, report, shader_build};
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 25] = [
+pub const ALL: [(&str, Target); 31] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -37,6 +42,12 @@ pub const ALL: [(&str, Target); 25] = [
     ("world", world),
     ("materials", materials),
     ("record", record),
+    ("compare", compared),
+    ("verdicts", verdicts),
+    ("tables", tables),
+    ("stress", stress),
+    ("part", part),
+    ("bodies", listed_bodies),
     ("include", include),
     ("arguments", arguments),
 ];
@@ -193,6 +204,84 @@ fn record(data: &[u8]) {
         assert!(report::json::parse(&written, Path::new("b.json")).is_ok());
         let style = report::table::Style::default();
         assert!(!report::console::record(&record, style).is_empty() && !report::csv::to_string(&record).is_empty());
+    }
+}
+
+/// Records of two sides between zero bytes, by processes and by blocks.
+fn compared(data: &[u8]) {
+    let side = |data: &[u8]| {
+        let record = document(data, report::json::parse)?;
+        Some([Input { name: "a.json".to_owned(), record }])
+    };
+    let (a, b) = parted(data);
+    let (Some(a), Some(b)) = (side(a), side(b)) else { return };
+    for options in [Options { fail_above: Some(0.05), ..Options::default() }, Options::default().for_blocks(&a, &b)] {
+        match compare::compare(&a, &b, &options) {
+            Ok(comparison) => {
+                let written = report::json::to_string(&comparison).expect("a comparison is JSON");
+                verdicts(written.as_bytes());
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
+/// A document, or an error, which may be long: what prints it cuts it and joins its lines.
+fn document<T>(data: &[u8], parse: impl Fn(&str, &Path) -> Result<T, report::json::ReadError>) -> Option<T> {
+    let text = std::str::from_utf8(data).ok()?;
+    let read = parse(text, Path::new("a.json"));
+    assert!(read.as_ref().err().is_none_or(|error| !error.to_string().is_empty()));
+    read.ok()
+}
+
+/// A comparison, printed and as a page.
+fn verdicts(data: &[u8]) {
+    let Some(comparison) = document::<Comparison>(data, report::json::document) else { return };
+    let style = report::table::Style::default();
+    assert!(!compare::render(&comparison, style).is_empty() && !compare::markdown(&comparison).is_empty());
+    let verdicts = compare::sections(&comparison);
+    assert!(!html::page(&Contents { verdicts, ..Contents::default() }).is_empty());
+}
+
+/// Tables as a page; as `report` does, larger ones are left out.
+fn tables(data: &[u8]) {
+    const MOST_CELLS: usize = 1 << 12;
+    let Some(document) = document::<Tables>(data, report::json::document) else { return };
+    let cells = document.all().map(|table| table.columns.len().saturating_mul(table.rows.len()));
+    if cells.fold(0, usize::saturating_add) <= MOST_CELLS {
+        let tables = vec![TableSource { name: "a.json".to_owned(), document }];
+        assert!(!html::page(&Contents { tables, ..Contents::default() }).is_empty());
+    }
+}
+
+/// A record that a second call of `stress` goes on with: its own, and one of other steps.
+fn stress(data: &[u8]) {
+    const OTHER: &[u8] = include_bytes!("../corpus/stress/whole");
+    let file = cli::StressFile::new(written(&[("f.json", data)]));
+    let other: StressRecord = document(OTHER, report::json::document).expect("it is a record of stress");
+    let own: Option<StressRecord> = document(data, report::json::document);
+    for template in own.iter().chain([&other]) {
+        match file.known(template, false) {
+            Ok(series) => assert!(series.len() < data.len()),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+    if let Some(record) = own {
+        assert!(!record.csv().is_empty() && report::json::to_string(&record).is_ok());
+    }
+}
+
+fn part(data: &[u8]) {
+    match cli::read_part(&written(&[("a.png.part.json", data)])) {
+        Ok(part) => assert!(part.rows[1] <= part.size[1] && !part.picture.contains('/')),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
+fn listed_bodies(data: &[u8]) {
+    match bodies::read(&written(&[("a.csv", data)])) {
+        Ok(found) => assert!(found.iter().all(|body| body.check().is_ok())),
+        Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
 

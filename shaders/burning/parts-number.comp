@@ -1,6 +1,7 @@
 #version 450
 
-// The parts in the order of their roots: one workgroup counts them, a run of vertices a thread.
+// The parts in the order of their roots: one workgroup counts them, a run of vertices a thread. A storage buffer of 128 MiB, as
+// lavapipe's are, holds what 4,194,304 vertices have bent: two walks of 16,384 iterations, of the 65,535 that it allows.
 
 layout(local_size_x = 256) in;
 

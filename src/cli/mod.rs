@@ -36,6 +36,8 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
 pub use self::page::{axes_table, options_table};
+pub use self::part::read as read_part;
+pub use self::stress::File as StressFile;
 use crate::measure::study::{Study, Visitor};
 use crate::{gpu, papers};
 

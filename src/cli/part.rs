@@ -177,6 +177,9 @@ pub fn beside(picture: &Path) -> PathBuf {
 }
 
 /// Reads what stands beside a picture.
+///
+/// # Errors
+/// [`Failure::Input`] for a file that cannot be read or is no part of a film.
 pub fn read(path: &Path) -> Result<Part, Failure> {
     let failed = |reason: String| Failure::Input(format!("reading the part {}: {reason}", path.display()));
     // Far more than any part has.

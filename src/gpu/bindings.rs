@@ -124,6 +124,7 @@ impl Bindings {
                 return Err(problem(format!("{} must be given once", slot.name)));
             };
             resource.check_device(device, pass)?;
+            check_range(device, slot, resource)?;
             check_resource(device, slot, resource).map_err(problem)?;
             if let Some(access) = access_of(slot, resource).map_err(problem)? {
                 uses.push(Use { resource: resource.clone(), access, discard: false });
@@ -241,34 +242,44 @@ fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String>
     }
 }
 
+/// Checks that the device can bind so many bytes at once.
+fn check_range(device: &Device, slot: &Slot, resource: &Resource) -> Result<(), Error> {
+    let Resource::Buffer(view) = resource else { return Ok(()) };
+    let limits = &device.physical().limits;
+    let (what, limit) = match slot.kind {
+        BindingKind::UniformBuffer => ("size in bytes of a uniform buffer", limits.max_uniform_buffer_range),
+        _ => ("size in bytes of a storage buffer", limits.max_storage_buffer_range),
+    };
+    if view.len_bytes() > u64::from(limit) {
+        return Err(Error::Limit {
+            object: resource.name().to_owned(),
+            what,
+            wanted: view.len_bytes(),
+            limit: limit.into(),
+        });
+    }
+    Ok(())
+}
+
 /// Checks that the device can bind the resource to a descriptor of this kind, and that the resource was made for it.
 fn check_resource(device: &Device, slot: &Slot, resource: &Resource) -> Result<(), String> {
     let (limits, name) = (&device.physical().limits, resource.name());
     let not_made = |usage: &str| Err(format!("{} is a {usage}, which {name} was not made to be", slot.name));
     match resource {
         Resource::Buffer(view) => {
-            let (usage, kind, alignment, limit) = match slot.kind {
-                BindingKind::UniformBuffer => (
-                    vk::BufferUsageFlags::UNIFORM_BUFFER,
-                    "uniform buffer",
-                    limits.min_uniform_buffer_offset_alignment,
-                    limits.max_uniform_buffer_range,
-                ),
-                _ => (
-                    vk::BufferUsageFlags::STORAGE_BUFFER,
-                    "storage buffer",
-                    limits.min_storage_buffer_offset_alignment,
-                    limits.max_storage_buffer_range,
-                ),
+            let (usage, kind, alignment) = match slot.kind {
+                BindingKind::UniformBuffer => {
+                    (vk::BufferUsageFlags::UNIFORM_BUFFER, "uniform buffer", limits.min_uniform_buffer_offset_alignment)
+                }
+                _ => {
+                    (vk::BufferUsageFlags::STORAGE_BUFFER, "storage buffer", limits.min_storage_buffer_offset_alignment)
+                }
             };
             if !view.buffer.usage().contains(usage) {
                 return not_made(kind);
             }
             if view.range.start % alignment.max(1) != 0 {
                 return Err(format!("{name} is bound from byte {}, no multiple of {alignment}", view.range.start));
-            }
-            if view.len_bytes() > u64::from(limit) {
-                return Err(format!("{name} has {} bytes, and a {kind} at most {limit}", view.len_bytes()));
             }
         }
         Resource::Image(view) => {

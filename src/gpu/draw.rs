@@ -103,7 +103,7 @@ impl<'a> Draw<'a> {
             return self;
         };
         let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: inside the pass's render pass; both pipelines were made for it and share one layout.
+        // SAFETY: inside the pass's render pass; both pipelines were made for one that is compatible with it, of one program.
         unsafe { self.commands.device.raw.cmd_bind_pipeline(self.commands.raw, point, pipeline.raw) };
         self
     }

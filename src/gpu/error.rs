@@ -209,3 +209,20 @@ impl<T> Context<T> for Result<T, vk::Result> {
         self.map_err(|result| Error::NoDevice { reason: format!("{operation} {object}: {result}") })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_of_no_known_size_is_told_without_one() {
+        for result in [vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, vk::Result::ERROR_OUT_OF_HOST_MEMORY] {
+            let error = Err::<(), _>(result).context("creating buffer", "water").unwrap_err();
+            let told = "water (creating buffer): out of memory; lower the sizes or choose a device with more";
+            assert_eq!(error.to_string(), told, "{result}");
+        }
+        let error = |bytes| Error::OutOfMemory { object: "water".to_owned(), bytes }.to_string();
+        assert!(!error(0).contains("allocating"), "{}", error(0));
+        assert!(error(1).starts_with("allocating 1 bytes for water: "), "{}", error(1));
+    }
+}

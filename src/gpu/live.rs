@@ -1,4 +1,4 @@
-//! Counts of the Vulkan objects alive, by kind. A test ends with every count at zero.
+//! Counts of the Vulkan objects alive, by kind. A test ends with every count at zero, but for what libraries of shaders keep.
 
 use std::sync::Mutex;
 

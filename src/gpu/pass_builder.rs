@@ -260,7 +260,7 @@ impl PassBuilder {
         self
     }
 
-    /// Makes modules, layouts, pipeline, descriptor set and framebuffer, checking every declared name against the
+    /// Makes descriptor set and framebuffer, and modules, layouts and pipeline where the library keeps none, checking every declared name against the
     /// shaders and every resource against its use.
     ///
     /// # Errors
@@ -304,7 +304,7 @@ impl PassBuilder {
         };
         if desc.kind == PassKind::Compute {
             let make = || Pipeline::compute(device, name, &program).map(named);
-            let own = shaders.pipelines.pipeline(state(&program.modules, None), make)?;
+            let own = shaders.pipelines.pipeline(&program, state(&program.modules, None), make)?;
             return finish(shaders, desc, Pipelines { own, counting: None, stride_bytes: 0, element_bytes: 0 }, None);
         }
         pass_check::targets(device, &desc, &program)?;
@@ -316,7 +316,7 @@ impl PassBuilder {
         let modules = &program.modules;
         let topology = desc.topology;
         let raster = Some(RasterState::new(targets, &layout, topology));
-        let own = shaders.pipelines.pipeline(state(modules, raster), || {
+        let own = shaders.pipelines.pipeline(&program, state(modules, raster), || {
             Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology).map(named)
         })?;
         let counting = match &desc.counting {
@@ -331,8 +331,9 @@ impl PassBuilder {
                     (constants.check)(name, &modules)?;
                 }
                 let raster = Some(RasterState::new(&targets, &layout, topology));
-                Some(shaders.pipelines.pipeline(state(&modules, raster), || {
+                Some(shaders.pipelines.pipeline(&program, state(&modules, raster), || {
                     Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)
+                        .map(named)
                 })?)
             }
         };

@@ -255,7 +255,7 @@ fn flags(device: &Device) -> vk::PipelineCreateFlags {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
-        // SAFETY: a frame keeps the pass that owns this pipeline until its fence.
+        // SAFETY: a frame keeps the passes that hold this pipeline until its fence.
         unsafe { self.device.raw.destroy_pipeline(self.raw, None) };
         self.device.live().remove(Kind::Pipeline);
     }

@@ -1,5 +1,6 @@
 //! Pipelines by everything that they are made from. A paper makes passes of one name, shaders and state more than once: a step of
-//! a pyramid for each level, all passes anew for buffers that have grown. Only the first of them compiles.
+//! a pyramid for each level, all passes anew for buffers that have grown. Only the first compiles; threads that ask at once may
+//! each make one.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -28,7 +29,7 @@ struct Made {
     pipelines: Vec<(PipelineState, Arc<Pipeline>)>,
 }
 
-/// All that distinguishes the pipelines of one library.
+/// All that distinguishes the pipelines of one program.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PipelineState {
     /// Name and section of the pass, which the pipeline is named after.
@@ -112,16 +113,18 @@ impl PipelineStore {
         Ok(program)
     }
 
-    /// The pipeline of a state; `make` makes the first. Others may ask for theirs meanwhile.
+    /// The pipeline of a program in a state; `make` makes the first. Others may ask for theirs meanwhile.
     ///
     /// # Errors
     /// Those of `make`.
     pub fn pipeline(
         &self,
+        program: &Arc<Program>,
         state: PipelineState,
         make: impl FnOnce() -> Result<Arc<Pipeline>, Error>,
     ) -> Result<Arc<Pipeline>, Error> {
-        let kept = self.lock().pipelines.iter().find(|made| made.0 == state).map(|made| made.1.clone());
+        let is_it = |made: &&(PipelineState, Arc<Pipeline>)| made.0 == state && Arc::ptr_eq(&made.1.program, program);
+        let kept = self.lock().pipelines.iter().find(is_it).map(|made| made.1.clone());
         if let Some(pipeline) = kept {
             return Ok(pipeline);
         }
@@ -140,6 +143,11 @@ impl PipelineStore {
             (Kind::PipelineLayout, programs),
             (Kind::Pipeline, made.pipelines.len()),
         ]
+    }
+
+    /// True while a pass holds a pipeline.
+    pub fn is_in_use(&self) -> bool {
+        self.lock().pipelines.iter().any(|(_, pipeline)| Arc::strong_count(pipeline) > 1)
     }
 
     /// Passes that are made from here on compile anew.

@@ -329,7 +329,7 @@ impl RenderPass {
 
 impl Drop for RenderPass {
     fn drop(&mut self) {
-        // SAFETY: pipelines, framebuffers and passes hold an `Arc` of this render pass.
+        // SAFETY: framebuffers and passes hold an `Arc` of this render pass; pipelines do not need it once created.
         unsafe { self.device.raw.destroy_render_pass(self.raw, None) };
         self.device.live().remove(Kind::RenderPass);
     }

@@ -67,6 +67,11 @@ impl ShaderLibrary {
         self.pipelines.kept()
     }
 
+    /// True while a pass holds one of the pipelines.
+    pub fn is_in_use(&self) -> bool {
+        self.pipelines.is_in_use()
+    }
+
     /// Forgets the modules and pipelines that were made: the next passes make theirs again, as the first time.
     pub fn forget_pipelines(&self) {
         self.pipelines.clear();

@@ -76,7 +76,7 @@ pub fn measure_settled(
         if measurements.iter().any(|m| m.frame_ms.is_empty()) {
             return Err(Error::Interrupted);
         }
-        // Passes that are made anew may find compiled what the first ones had to wait for.
+        // Passes that are made anew find compiled what the first ones had to wait for.
         let first_frame_ms =
             first_frame_ms.get_or_insert_with(|| measurements.iter().map(|one| one.first_frame_ms).collect());
         let mut are_settled = true;
@@ -170,8 +170,6 @@ fn build_as<S: Study>(
     variant: S::Variant,
     label: &str,
 ) -> Result<Built<S>, Error> {
-    // What it costs to make it holds every pipeline of its own, also those that a variant before it has made.
-    machine.shaders.forget_pipelines();
     let live = Arc::clone(machine.device.live());
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();
@@ -258,6 +256,8 @@ impl<S: Study> Bench<'_, S> {
                     1 => variant.as_str().to_owned(),
                     _ => format!("{}-{number}", variant.as_str()),
                 };
+                // What it costs to make it holds all its pipelines, also those that a variant before it has made.
+                machine.shaders.forget_pipelines();
                 build_as(machine, study, &loaded.scene, variant, &label)
             })
             .collect::<Result<Vec<_>, _>>()?;

@@ -61,13 +61,14 @@ fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
     let lent = Lent::take();
     let device = &lent.0;
     let outcome = panic::catch_unwind(AssertUnwindSafe(|| body(device)));
+    forget_most(device);
     let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
     if let Err(failure) = outcome {
         eprintln!("{}", messages.join("\n"));
         panic::resume_unwind(failure);
     }
     assert!(messages.is_empty(), "{} validation message(s):\n{}", messages.len(), messages.join("\n"));
-    assert_eq!(alive_beside_kept(device), [(Kind::Instance, 1), (Kind::Device, 1)], "objects left alive");
+    assert_nothing_left(device);
     assert_eq!(device.live().memory(), [], "memory left allocated");
 }
 
@@ -75,7 +76,7 @@ fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
 /// again.
 static LIBRARIES: Mutex<Vec<(Compiler, Arc<ShaderLibrary>)>> = Mutex::new(Vec::new());
 
-/// Most pipelines that a library keeps from one test to the next.
+/// Most objects of a kind that a library keeps from one test to the next.
 const MOST_KEPT: usize = 300;
 
 /// The built-in shaders as a compiler made them.
@@ -94,21 +95,27 @@ fn new_library(device: &Arc<Device>, compiler: Compiler) -> Arc<ShaderLibrary> {
     Arc::new(ShaderLibrary::new(device, compiler, None).expect("no folder is compiled"))
 }
 
-/// Live objects by kind, but for those that libraries keep.
-fn alive_beside_kept(device: &Arc<Device>) -> Vec<(Kind, usize)> {
-    let mut alive = device.live().alive();
+/// # Panics
+/// When more is alive than the device and what its libraries keep, or a pass still holds some of that.
+fn assert_nothing_left(device: &Arc<Device>) {
+    let libraries = [Compiler::Glslang, Compiler::Naga].map(|compiler| shaders_by(device, compiler));
+    let kept: Vec<_> = libraries.iter().flat_map(|library| library.kept()).collect();
+    for kind in Kind::ALL {
+        let own = usize::from(matches!(kind, Kind::Instance | Kind::Device));
+        let expected = own + kept.iter().filter(|(of, _)| *of == kind).map(|(_, count)| count).sum::<usize>();
+        assert_eq!(device.live().count(kind), expected, "objects left alive: {kind:?}");
+    }
+    assert!(!libraries.iter().any(|library| library.is_in_use()), "a pass is left alive");
+}
+
+/// Libraries that keep too much keep nothing.
+fn forget_most(device: &Arc<Device>) {
     for compiler in [Compiler::Glslang, Compiler::Naga] {
         let library = shaders_by(device, compiler);
-        let kept = library.kept();
-        for (kind, count) in &mut alive {
-            *count -= kept.iter().find(|(of, _)| of == kind).map_or(0, |(_, kept)| *kept);
-        }
-        if kept.iter().any(|(_, kept)| *kept > MOST_KEPT) {
+        if library.kept().iter().any(|(_, count)| *count > MOST_KEPT) {
             library.forget_pipelines();
         }
     }
-    alive.retain(|(_, count)| *count > 0);
-    alive
 }
 
 /// The devices of the tests, opened together before the first of them works.

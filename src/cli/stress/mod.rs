@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 
 pub use self::all::{StressAllArgs, run as run_all};
 use self::climber::Children;
-use self::record::File;
+pub use self::record::File;
 pub use self::step::StepArgs;
 use super::failure::Failure;
 use super::options::{MachineArgs, number_in};

@@ -20,12 +20,16 @@ pub struct File {
 }
 
 impl File {
+    /// That of a path; it need not be there.
     pub fn new(path: PathBuf) -> Self {
         File { path }
     }
 
     /// The series that an earlier call left under the same identity; none where there is no file, or all is to be measured
     /// anew.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a file that cannot be read, and for a record of other steps.
     pub fn known(&self, template: &StressRecord, is_anew: bool) -> Result<Vec<Series>, Failure> {
         let path = self.path.display();
         let text = match file::read_text(&self.path, MAX_BYTES) {
@@ -56,6 +60,10 @@ impl File {
         Ok(record.series)
     }
 
+    /// Writes the record in place of the one before.
+    ///
+    /// # Errors
+    /// [`Failure::Running`] for a file that cannot be written.
     pub fn write(&self, record: &StressRecord) -> Result<(), Failure> {
         Ok(file::write(&self.path, outcome::text(record)?.as_bytes())?)
     }

@@ -202,7 +202,7 @@ pub struct Built {
 pub struct SideBuilt {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Milliseconds of making it; `None` where constants alone changed.
+    /// Milliseconds of making it, less pipelines that were there; `None` where constants alone changed.
     pub build_ms: Option<f64>,
     /// Milliseconds of loading its input; `None` as above.
     pub load_ms: Option<f64>,

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder};
@@ -10,6 +9,8 @@ use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{BlockCounts, Burning, Counts, Look, Parameters, Variant, VertexState};
 use fumarole::scene::{Mesh, shapes};
+
+use crate::common::shaders_by;
 
 /// A closed object of about 1,000 triangles.
 pub fn ball() -> Mesh {

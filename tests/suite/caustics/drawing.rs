@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder};
 use fumarole::image::{Rgba8, Samples};
@@ -11,6 +10,8 @@ use fumarole::measure::picture::read_target;
 use fumarole::measure::{Paper, Target};
 use fumarole::papers::caustics::water::Grid;
 use fumarole::papers::caustics::{Caustics, Parameters, ReceiverInput, Variant};
+
+use crate::common::shaders_by;
 
 /// The frame that is drawn: not the first, so that the water has moved.
 pub const FRAME: u32 = 3;

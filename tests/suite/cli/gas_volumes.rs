@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fumarole::image::read_png;
 
 use super::dumps::read_npy;
-use super::program::{ONCE, Program, assert_schema, file, folder, gas, read_json, sha256};
+use super::program::{ONCE, Program, assert_schema, entries, file, folder, gas, read_json, sha256};
 
 const SMALL: &str = "--size 45x31 --steps 12 --table 8 --camera 0,1.5,6,0,1.5,0 --tau 20";
 
@@ -226,4 +226,14 @@ fn files_and_values_that_cannot_be_are_refused() {
     ] {
         small("render --quiet --image seen.png", path, "").args(options).inside(out.path()).run().succeeded();
     }
+}
+
+/// A step that lavapipe's loops cannot take to its end fails the run by pass and option.
+#[test]
+fn a_step_beyond_the_driver_s_loops_fails_the_run() {
+    let picture = folder();
+    let program = gas("render --quiet --variant traced --size 3x1 --steps 100000 --image")
+        .arg(picture.path().join("picture.png"));
+    program.on_test_device().run().refused(1, &["pass ", "more iterations", "--steps"]);
+    assert!(entries(picture.path()).is_empty());
 }

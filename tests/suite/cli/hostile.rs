@@ -83,46 +83,114 @@ impl Concat for [&OsStr] {
     }
 }
 
-/// A command line that lacks the file to read, and an ending that it knows.
-type Reader = (fn() -> Program, &'static str);
+/// A command line that reads a file, and the endings that it knows.
+type Reader = (fn(&Path) -> Program, &'static [&'static str]);
 
 /// Every option that reads a file.
-fn readers() -> [Reader; 15] {
+fn readers() -> [Reader; 20] {
     [
-        (|| caustics("render --mesh"), "obj"),
-        (|| caustics("render --mesh"), "gltf"),
-        (|| terrain("render --map"), "asc"),
-        (|| terrain("render --variant tiled-compute --stream --map"), "asc"),
-        (|| terrain("render --map"), "png"),
-        (|| terrain("render --drape"), "png"),
-        (|| gas("render --volume-file"), "nrrd"),
-        (|| gas("render --volume-file"), "nhdr"),
-        (|| gas("render --volume-file"), "mhd"),
-        (|| gas("render --volume-file"), "nii"),
-        (|| gas("render --volume-file"), "nii.gz"),
-        (|| gas("render --volume-file"), "nvdb"),
-        (|| lava("render --rock"), "png"),
-        (|| burning("render --mesh box --texture"), "png"),
-        (|| fumarole("compare"), "json"),
+        (|path| caustics("render --mesh").arg(path), &["obj", "ply", "stl", "gltf", "glb"]),
+        (|path| burning("render --mesh").arg(path), &["obj"]),
+        (|path| burning("render --mesh box --object").arg(placed(path)), &["ply"]),
+        (|path| gas("render --object").arg(path), &["stl"]),
+        (|path| lava("render --object").arg(path), &["obj"]),
+        (|path| terrain("render --object").arg(path), &["glb"]),
+        (|path| terrain("render --map").arg(path), &["asc", "png", "tif", "hgt", "vrt", "hdr", "bil", "bsq", "dem"]),
+        (|path| terrain("render --overview 1 --map").arg(path), &["tif"]),
+        (|path| streamed().arg(path), &["asc", "tif", "hgt", "vrt", "hdr"]),
+        (|path| lava("render --simulation sph --bed").arg(path), &["asc", "tif", "png"]),
+        (|path| caustics("render --water-map").arg(path), &["asc", "tif", "png"]),
+        (|path| terrain("render --drape").arg(path), &["png"]),
+        (|path| lava("render --rock").arg(path), &["png"]),
+        (|path| burning("render --mesh box --texture").arg(path), &["png"]),
+        (|path| burning("render --mesh box --materials").arg(path), &["toml"]),
+        (|path| gas("render --volume-file").arg(path), &["nrrd", "nhdr", "mhd", "mha", "nii", "nii.gz", "img", "nvdb"]),
+        (|path| terrain("collide --bodies").arg(path), &["csv"]),
+        (|path| fumarole("compare").arg(path).arg(path), &["json"]),
+        (|path| caustics("experiment 5-1 --quiet --assembled").arg(path).on_test_device(), &["json"]),
+        // Goes on with the record that is there.
+        (|path| caustics("stress --quiet --json").arg(path).on_test_device(), &["json"]),
     ]
+}
+
+fn streamed() -> Program {
+    terrain("render --variant tiled-compute --stream --map")
+}
+
+/// An object of a file with its place.
+fn placed(path: &Path) -> std::ffi::OsString {
+    [path.as_os_str(), OsStr::new("@1,0,0")].concat_os()
+}
+
+fn make_pipe(path: &Path) {
+    assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
 }
 
 #[test]
 fn what_has_no_end_is_refused() {
     let out = folder();
-    for (number, (reader, ending)) in readers().into_iter().enumerate() {
+    let each = readers().into_iter().flat_map(|(reader, endings)| endings.iter().map(move |ending| (reader, ending)));
+    for (number, (reader, ending)) in each.enumerate() {
         let zeros = out.path().join(format!("zeros{number}.{ending}"));
         let pipe = out.path().join(format!("pipe{number}.{ending}"));
+        let nested = out.path().join(format!("folder{number}.{ending}"));
         symlink("/dev/zero", &zeros).unwrap();
-        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        for path in [&zeros, &pipe, &out.path().to_owned()] {
-            let program = reader().arg(path);
-            let program = if ending == "json" { program.arg(path) } else { program };
-            let ended = program.run();
-            let is_folder = path == out.path();
-            let part = if is_folder { "" } else { "regular file" };
-            ended.refused(2, &[part, path.to_str().unwrap()]);
+        make_pipe(&pipe);
+        fs::create_dir(&nested).unwrap();
+        for path in [&zeros, &pipe] {
+            reader(path).run().refused(2, &["regular file", path.to_str().unwrap()]);
         }
+        reader(&nested).run().refused(2, &[nested.to_str().unwrap()]);
+    }
+}
+
+/// Pipes that a file names, or that lie in a folder; options that take files and folders.
+#[test]
+fn what_has_no_end_is_refused_in_folders_and_by_name() {
+    let out = folder();
+    let pipe = out.path().join("pipe");
+    make_pipe(&pipe);
+    let part = "xOff='0' yOff='0' xSize='2' ySize='2'";
+    let source = format!("<SourceFilename relativeToVRT='1'>pipe</SourceFilename><SrcRect {part}/><DstRect {part}/>");
+    let vrt = format!(
+        "<VRTDataset rasterXSize='2' rasterYSize='2'><VRTRasterBand><SimpleSource>{source}</SimpleSource>\
+         </VRTRasterBand></VRTDataset>"
+    );
+    let vrt = file(&out, "a.vrt", vrt);
+    let mhd = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_DOUBLE\nElementDataFile = pipe\n";
+    let nhdr = "NRRD0004\ntype: double\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: raw\ndata file: pipe\n\n";
+    let gltf = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":"pipe"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,
+        "type":"VEC3","min":[0,0,0],"max":[0,0,0]}]}"#;
+    let toml = "texture = \"pipe\"\n[[material]]\nkind = \"metal\"\ncolor = [0, 0, 1]\n";
+    let pipe_in = |name: &str, pipe: &str| {
+        let folder = out.path().join(name);
+        fs::create_dir(&folder).unwrap();
+        make_pipe(&folder.join(pipe));
+        folder
+    };
+    let fail = "it is not a regular file";
+    for (program, path, named) in [
+        (terrain("render --map"), vrt.clone(), "pipe"),
+        (streamed(), vrt, "pipe"),
+        (terrain("render --map"), pipe_in("maps", "N45E006.hgt"), "N45E006.hgt"),
+        (gas("render --volume-file"), file(&out, "a.mhd", mhd), "pipe"),
+        (gas("render --volume-file"), file(&out, "a.nhdr", nhdr), "pipe"),
+        (caustics("render --mesh"), file(&out, "a.gltf", gltf), "buffer 0"),
+        (burning("render --mesh box --materials"), file(&out, "a.toml", toml), "pipe"),
+        (fumarole("assemble"), pipe_in("shards", "a-shard-0-of-2.json"), "a-shard-0-of-2.json"),
+        (fumarole("assemble"), pipe_in("parts", "a.png.part.json"), "a.png.part.json"),
+        (fumarole("report"), pipe.clone(), "pipe"),
+        (fumarole("report --b a.json --a"), pipe.clone(), "pipe"),
+        (fumarole("report"), "/dev/zero".into(), "zero"),
+    ] {
+        program.arg(path).run().refused(2, &[&format!("{named}: {fail}")]);
+    }
+    fumarole("assemble").arg(&pipe).run().refused(2, &["pipe", "Not a directory"]);
+    // What cannot be read is not in the report of a folder, which has nothing then.
+    for name in ["a.json", "a.svg"] {
+        fumarole("report").arg(pipe_in(&format!("of-{name}"), name)).run().refused(2, &["no record", "no plot"]);
     }
 }
 
@@ -146,7 +214,7 @@ fn shader_folders_hold_their_shaders_themselves() {
         ended.refused(2, &["cast.frag", part]);
     }
     fs::remove_file(&cast).unwrap();
-    assert!(Command::new("mkfifo").arg(&cast).status().unwrap().success());
+    make_pipe(&cast);
     caustics("render --shader-dir").arg(&shaders).tiny().run().refused(2, &["cast.frag", "regular file"]);
 }
 

@@ -206,24 +206,49 @@ fn a_table_keeps_its_finished_rows() {
     assert!(!rows.is_empty() && rows.len() < 99, "{} rows", rows.len());
 }
 
-#[test]
-fn term_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
+/// True where a process of a group is left, also one that has ended and that nothing has waited for.
+fn has_member(group: u32) -> bool {
+    let of_group = |name: std::ffi::OsString| {
+        let stat = fs::read_to_string(Path::new("/proc").join(name).join("stat")).unwrap_or_default();
+        // Behind the name, which may hold anything: state, parent, group.
+        let field = stat.rsplit(')').next().unwrap_or_default().split_whitespace().nth(2).map(str::to_owned);
+        field.is_some_and(|field| field == group.to_string())
+    };
+    fs::read_dir("/proc").unwrap().flatten().any(|entry| of_group(entry.file_name()))
+}
+
+/// A signal to the first process alone, as a service manager, a batch system or a shell that ends sends it.
+fn assert_first_process_ends_all(signal: &str) {
     let out = folder();
     let temporary = folder();
     let program = caustics(LONG).args("--processes 3").inside(out.path()).tiny().env("TMPDIR", temporary.path());
-    let mut running = program.start();
+    // The tests may run under `nohup` themselves.
+    let mut running = program.under("env --default-signal=HUP").start();
     wait_until(&mut running, |id| children(id).iter().any(|&child| handles_interrupts(child)));
     // Some frames are finished in this time.
     thread::sleep(Duration::from_secs(3));
-    let child = children(running.id())[0];
-    // To the first process alone, as a service manager or a batch system does.
-    assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
+    let (id, child) = (running.id(), children(running.id())[0]);
+    assert!(has_member(id), "the group {id} is empty");
+    assert!(Command::new("kill").args([signal, &id.to_string()]).status().unwrap().success());
+    let pressed = Instant::now();
     let ended = running.end();
+    assert!(pressed.elapsed() < SOON, "it took {:?} to end", pressed.elapsed());
     ended.succeeded();
     assert!(!Path::new(&format!("/proc/{child}")).exists(), "the process {child} outlives its parent");
+    assert!(!has_member(id), "a process outlives the first one");
     assert_eq!(entries(temporary.path()), [""; 0]);
     assert_eq!(entries(out.path()), ["a.json"]);
     assert_interrupted(&out.path().join("a.json"));
+}
+
+#[test]
+fn term_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
+    assert_first_process_ends_all("-TERM");
+}
+
+#[test]
+fn a_closed_terminal_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
+    assert_first_process_ends_all("-HUP");
 }
 
 /// A frame of 4e12 weights, and the hundred steps to one of a fluid of 200,000 particles, which is minutes and more: they are

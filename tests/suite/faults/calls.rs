@@ -101,6 +101,7 @@ fn assert_faults_are_told(paper: &Paper) {
         }
         let code = code(name, failure);
         assert_eq!(ended.status.code(), Some(code), "{what}: {}", ended.stderr);
+        assert!(!ended.stderr.contains("allocating 0 bytes"), "{what}: {}", ended.stderr);
         if code == 0 {
             continue;
         }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use fumarole::gpu::{Instance, PhysicalDevice};
+use fumarole::gpu::{self, Instance, PhysicalDevice};
 use fumarole::measure::bench::{Bench, Loaded, load};
 use fumarole::measure::machine::{Machine, MachineOptions};
 use fumarole::measure::measure::{Schedule, Watch};
@@ -24,7 +24,7 @@ use fumarole::measure::study::{Study, Visitor};
 use fumarole::measure::{Error, Paper as _, Variant};
 use fumarole::papers;
 
-use super::calls::{FAILURES, HARMLESS, MEMORY};
+use super::calls::{FAILURES, HARMLESS, MEMORY, code};
 use super::{Layer, PAPERS, Paper, Report};
 use crate::common::wanted_device;
 
@@ -231,7 +231,19 @@ fn bench<S: Study>(study: &S, loaded: &Loaded<S>, variant: S::Variant) -> Result
     Ok(())
 }
 
-/// Nothing is left alive, and the failure is told in one line.
+/// The exit code of a program that ends with this error, as `src/cli/failure.rs` maps those that a failing call may lead to.
+fn exit_code(error: &Error) -> i32 {
+    use gpu::Error as E;
+    match error {
+        Error::Gpu(E::NoLoader { .. } | E::NoInstance { .. } | E::NoDevice { .. } | E::MissingFeature { .. }) => 3,
+        // A call asks for kinds of images, too, and its failure is told as a lack of them.
+        Error::Gpu(E::OutOfMemory { .. } | E::Vulkan { .. } | E::Allocation { .. } | E::Unsupported { .. }) => 1,
+        // Bad input, or a fault of ours: neither is what a call's failure is.
+        _ => 2,
+    }
+}
+
+/// Nothing is left alive, and the failure is told in one line and by the exit code.
 fn judged(
     (name, number, failure): (&str, usize, &str),
     outcome: thread::Result<Result<(), Error>>,
@@ -245,7 +257,33 @@ fn judged(
         // A wait is asked again where the machine is slow, and the round that was counted had more of them.
         (Ok(()), None) if report.count(name) < number => Ok(()),
         (Ok(()), Some(_)) if MEMORY.contains(&name) || name == HARMLESS && failure != "lost" => Ok(()),
-        (Err(error), Some(_)) if error.to_string().lines().count() == 1 => Ok(()),
+        (Err(error), Some(_)) => {
+            let (line, expected, found) = (error.to_string(), code(name, failure), exit_code(&error));
+            if line.lines().count() != 1 || line.contains("allocating 0 bytes") {
+                return Err(format!("it says {line:?}"));
+            }
+            if found == expected { Ok(()) } else { Err(format!("exit code {found} in place of {expected}: {line}")) }
+        }
         (outcome, failed) => Err(format!("{outcome:?} where {failed:?} failed")),
+    }
+}
+
+/// Of calls before there is a device and after that, failing in one line and otherwise.
+#[test]
+fn rounds_are_judged_by_exit_codes() {
+    let report = Report::of("frames 0\nalive Instance 1\nfailed vkCreateFence\n");
+    let judge = |name: &str, error: gpu::Error| judged((name, 1, "host"), Ok(Err(error.into())), &report);
+    let lost = || gpu::Error::OutOfMemory { object: "fence".to_owned(), bytes: 0 };
+    let absent = |reason: &str| gpu::Error::NoDevice { reason: reason.to_owned() };
+    judge("vkCreateFence", lost()).unwrap();
+    judge("vkCreateDevice", absent("none")).unwrap();
+    let limit = gpu::Error::Limit { object: "fence".to_owned(), what: "count", wanted: 2, limit: 1 };
+    for (wrong, part) in [
+        (judge("vkCreateFence", absent("none")), "exit code 3 in place of 1"),
+        (judge("vkCreateFence", limit), "exit code 2 in place of 1"),
+        (judge("vkCreateDevice", lost()), "exit code 1 in place of 3"),
+        (judge("vkCreateDevice", absent("two\nlines")), "it says"),
+    ] {
+        assert!(wrong.as_ref().is_err_and(|problem| problem.contains(part)), "{part}: {wrong:?}");
     }
 }

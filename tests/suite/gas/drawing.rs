@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder};
 use fumarole::image::{Rgba8, Samples};
@@ -11,6 +10,8 @@ use fumarole::measure::picture::read_target;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::{Capacity, Fragment, Gas, Parameters, Variant};
 use glam::{DVec3, Vec3};
+
+use crate::common::shaders_by;
 
 pub struct Drawing {
     /// Of each pixel, four floats.

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use ash::vk;
 use bytemuck::Pod;
 use fumarole::gpu::{
@@ -10,6 +9,8 @@ use fumarole::gpu::{
     Recorder, ShaderLibrary, transfer,
 };
 use fumarole::host_block;
+
+use crate::common::shaders_by;
 
 host_block! {
     /// `test/constant.frag`

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use ash::vk;
 use fumarole::gpu::live::Kind;
-use fumarole::gpu::{Blend, Compiler, ImageView, Load, Pass, ShaderLibrary, Topology};
+use fumarole::gpu::{Blend, Compiler, DepthTest, ImageView, Load, Pass, ShaderLibrary, Topology};
 
 use super::fixtures::{BLACK, Paint, Range, color_target, storage_buffer};
+use super::misuse_targets::depth_target;
 use crate::common::gpu_test;
 
-/// Every part of a pass's state that its pipeline is made from, alone, asks for a pipeline of its own; resources, load operations
-/// and extents do not.
+/// Name, section, shaders, formats, blending, culling, topology and depth test, each alone, ask for a pipeline of their own;
+/// resources, load operations and extents do not.
 #[test]
 fn passes_of_one_state_share_a_pipeline() {
     gpu_test(|device| {
@@ -19,6 +20,7 @@ fn passes_of_one_state_share_a_pipeline() {
         let small = target("small", vk::Format::R8G8B8A8_UNORM, 4);
         let others =
             [target("large", vk::Format::R8G8B8A8_UNORM, 8), target("wide", vk::Format::R16G16B16A16_SFLOAT, 4)];
+        let depth = depth_target(device, vk::Format::D32_SFLOAT);
         let pass = |name, section, fragment: &str, target: &Arc<ImageView>, load, blend| {
             let pass = Pass::graphics(name, section, "common/fullscreen.vert", fragment).constants::<Paint>();
             pass.color(target, load, blend)
@@ -44,6 +46,13 @@ fn passes_of_one_state_share_a_pipeline() {
             pass("paint", "1", "test/constant.frag", &small, BLACK, Blend::Add),
             own().cull(vk::CullModeFlags::BACK),
             own().topology(Topology::TriangleStrip),
+            Pass::graphics("paint", "1", "common/fullscreen.vert", "test/checker.frag").color(
+                &small,
+                BLACK,
+                Blend::Replace,
+            ),
+            own().depth(&depth, Load::Clear([1.0; 4]), DepthTest::LessWrite),
+            own().depth(&depth, Load::Clear([1.0; 4]), DepthTest::GreaterWrite),
         ];
         for (place, other) in others.into_iter().enumerate() {
             passes.push(other.build(&shaders).unwrap());
@@ -59,6 +68,32 @@ fn passes_of_one_state_share_a_pipeline() {
         drop(passes);
         drop(shaders);
         assert_eq!(pipelines(), none);
+    });
+}
+
+/// The pipeline of counting draws has the layout of its pass, which another of the same shaders and state has not.
+#[test]
+fn counting_draws_share_no_pipeline_with_another_program() {
+    gpu_test(|device| {
+        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let target = color_target(device, "target", vk::Format::R8G8B8A8_UNORM, 4, 4);
+        let depth = depth_target(device, vk::Format::D32_SFLOAT);
+        let pass = |fragment, load, blend, test| {
+            let pass = Pass::graphics("paint", "", "common/fullscreen.vert", fragment);
+            pass.color(&target, BLACK, blend).depth(&depth, load, test)
+        };
+        let checkers = || {
+            let own = pass("test/checker.frag", Load::Clear([1.0; 4]), Blend::Replace, DepthTest::LessWrite);
+            own.counting("common/empty.frag", DepthTest::LessReadOnly).build(&shaders).unwrap()
+        };
+        let pipelines = || shaders.kept()[3];
+        let _first = checkers();
+        assert_eq!(pipelines(), (Kind::Pipeline, 2));
+        let _equal = checkers();
+        assert_eq!(pipelines(), (Kind::Pipeline, 2));
+        let empty = pass("common/empty.frag", Load::Keep, Blend::Masked, DepthTest::LessReadOnly);
+        let _empty = empty.build(&shaders).unwrap();
+        assert_eq!(pipelines(), (Kind::Pipeline, 3));
     });
 }
 

@@ -21,7 +21,7 @@ use crate::common::{beside_others, wanted_device};
 const VARIABLE: &str = "FUMAROLE_TEST_MEMORY";
 /// Frames until pipelines, pools and the allocator have what they keep, and those that are looked at.
 const WARMUP: u32 = 40;
-const FRAMES: u32 = 120;
+const FRAMES: u32 = 300;
 /// Most that they may leave behind.
 const LIMIT_KB: i64 = 1024;
 

@@ -239,6 +239,8 @@ fn passes_are_bound_anew_while_they_are_recorded() {
             scope.spawn(|| {
                 for _ in 0..200 {
                     pass.rebind().with("Values", &others).build(&library).unwrap();
+                    // Of the same pipeline.
+                    let _equal = advance_pass(device, &others);
                 }
             });
         });

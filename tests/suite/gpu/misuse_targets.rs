@@ -10,7 +10,7 @@ use super::fixtures::{BLACK, color_target, run, shaders, texels};
 use super::misuse::message;
 use crate::common::gpu_test;
 
-fn depth_target(device: &Arc<Device>, format: vk::Format) -> Arc<ImageView> {
+pub fn depth_target(device: &Arc<Device>, format: vk::Format) -> Arc<ImageView> {
     let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
     Image::new(device, ImageDesc::new_2d("depth", format, 4, 4).usage(usage)).unwrap().view().unwrap()
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, FrameSample, ImageView, Mode, Recorder, ShaderLibrary};
@@ -10,6 +9,8 @@ use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::Grid;
 use fumarole::papers::lava::{Lava, Method, Parameters, Particles, ReadBack, Rock, Variant};
 use glam::{DVec3, Vec3};
+
+use crate::common::shaders_by;
 
 /// 1,000 particles in a space whose sides differ, grid cells that are no squares, planes that are no multiple of four.
 pub fn parameters() -> Parameters {

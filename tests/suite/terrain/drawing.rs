@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::shaders_by;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
@@ -10,6 +9,8 @@ use fumarole::measure::Paper;
 use fumarole::measure::picture::read_target;
 use fumarole::papers::terrain::{Hit, Inputs, MapInput, Parameters, Terrain, Variant, View};
 use fumarole::scene::Camera;
+
+use crate::common::shaders_by;
 
 pub struct Drawing {
     pub picture: Rgba8,

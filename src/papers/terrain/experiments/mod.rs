@@ -1,6 +1,6 @@
 //! The tables and figures of the `terrain` paper, with the paper's own numbers.
 
-mod bodies;
+pub mod bodies;
 pub mod collisions;
 mod decimals;
 pub mod figures;
