@@ -281,7 +281,7 @@ impl PassBuilder {
         };
         let modules = desc.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
         pass_check::stages(device, &desc, &modules)?;
-        let program = shaders.pipelines.program(device, name, modules)?;
+        let program = shaders.pipelines.program(device, name, &modules)?;
         let mut desc = desc;
         let wanted = desc.offered.drain(..).filter(|(name, _)| program.slots.iter().any(|slot| slot.name == *name));
         desc.resources.extend(wanted);

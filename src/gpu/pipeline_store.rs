@@ -17,16 +17,56 @@ use super::shader::{Compiler, ShaderModule};
 /// Modules, programs and pipelines of the shaders of one library.
 #[derive(Default)]
 pub(super) struct PipelineStore {
-    made: Mutex<Made>,
+    /// By the compiler that was asked for, which may not be the one that made them.
+    modules: Table<Compiler, ShaderModule>,
+    /// By the pass that they are named after.
+    programs: Table<&'static str, Program>,
+    /// By their state.
+    pipelines: Table<PipelineState, Pipeline>,
 }
 
-#[derive(Default)]
-struct Made {
-    /// Modules by the compiler that was asked for: they may be another's.
-    modules: Vec<(Compiler, Arc<ShaderModule>)>,
-    /// Programs by the pass that they are named after.
-    programs: Vec<(&'static str, Arc<Program>)>,
-    pipelines: Vec<(PipelineState, Arc<Pipeline>)>,
+/// Objects that are made once.
+struct Table<K, T>(Mutex<Vec<(K, Arc<T>)>>);
+
+impl<K, T> Default for Table<K, T> {
+    fn default() -> Self {
+        Table(Mutex::default())
+    }
+}
+
+impl<K: PartialEq, T> Table<K, T> {
+    fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<T>)>> {
+        // Each change is one push: what a panic leaves is whole.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The object of that key that `is_it` is true of; `make` makes the first, while others may ask for theirs.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    fn find_or_make(
+        &self,
+        key: K,
+        is_it: impl Fn(&T) -> bool,
+        make: impl FnOnce() -> Result<Arc<T>, Error>,
+    ) -> Result<Arc<T>, Error> {
+        let kept = self.lock().iter().find(|(of, made)| *of == key && is_it(made)).map(|(_, made)| made.clone());
+        if let Some(made) = kept {
+            return Ok(made);
+        }
+        let made = make()?;
+        self.lock().push((key, made.clone()));
+        Ok(made)
+    }
+
+    fn count(&self) -> usize {
+        self.lock().len()
+    }
+
+    fn clear(&self) {
+        let made = std::mem::take(&mut *self.lock());
+        drop(made);
+    }
 }
 
 /// All that distinguishes the pipelines of one program.
@@ -64,11 +104,6 @@ impl RasterState {
 }
 
 impl PipelineStore {
-    fn lock(&self) -> MutexGuard<'_, Made> {
-        // Each change is one push: what a panic leaves is whole.
-        self.made.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// The module of a shader; `make` makes the first.
     ///
     /// # Errors
@@ -79,14 +114,7 @@ impl PipelineStore {
         compiler: Compiler,
         make: impl FnOnce() -> Result<Arc<ShaderModule>, Error>,
     ) -> Result<Arc<ShaderModule>, Error> {
-        let is_it = |made: &&(Compiler, Arc<ShaderModule>)| made.0 == compiler && made.1.name == name;
-        let kept = self.lock().modules.iter().find(is_it).map(|made| made.1.clone());
-        if let Some(module) = kept {
-            return Ok(module);
-        }
-        let module = make()?;
-        self.lock().modules.push((compiler, module.clone()));
-        Ok(module)
+        self.modules.find_or_make(compiler, |made| made.name == name, make)
     }
 
     /// The program of a pass of these modules; the first is made.
@@ -97,23 +125,15 @@ impl PipelineStore {
         &self,
         device: &Arc<Device>,
         pass: &'static str,
-        modules: Vec<Arc<ShaderModule>>,
+        modules: &[Arc<ShaderModule>],
     ) -> Result<Arc<Program>, Error> {
-        let is_it = |made: &&(&str, Arc<Program>)| {
-            made.0 == pass
-                && made.1.modules.len() == modules.len()
-                && made.1.modules.iter().zip(&modules).all(|(a, b)| Arc::ptr_eq(a, b))
+        let is_it = |made: &Program| {
+            made.modules.len() == modules.len() && made.modules.iter().zip(modules).all(|(a, b)| Arc::ptr_eq(a, b))
         };
-        let kept = self.lock().programs.iter().find(is_it).map(|made| made.1.clone());
-        if let Some(program) = kept {
-            return Ok(program);
-        }
-        let program = Program::new(device, pass, modules)?;
-        self.lock().programs.push((pass, program.clone()));
-        Ok(program)
+        self.programs.find_or_make(pass, is_it, || Program::new(device, pass, modules.to_vec()))
     }
 
-    /// The pipeline of a program in a state; `make` makes the first. Others may ask for theirs meanwhile.
+    /// The pipeline of a program in a state; `make` makes the first.
     ///
     /// # Errors
     /// Those of `make`.
@@ -123,36 +143,29 @@ impl PipelineStore {
         state: PipelineState,
         make: impl FnOnce() -> Result<Arc<Pipeline>, Error>,
     ) -> Result<Arc<Pipeline>, Error> {
-        let is_it = |made: &&(PipelineState, Arc<Pipeline>)| made.0 == state && Arc::ptr_eq(&made.1.program, program);
-        let kept = self.lock().pipelines.iter().find(is_it).map(|made| made.1.clone());
-        if let Some(pipeline) = kept {
-            return Ok(pipeline);
-        }
-        let pipeline = make()?;
-        self.lock().pipelines.push((state, pipeline.clone()));
-        Ok(pipeline)
+        self.pipelines.find_or_make(state, |made| Arc::ptr_eq(&made.program, program), make)
     }
 
     /// Live objects by kind.
     pub fn kept(&self) -> [(Kind, usize); 4] {
-        let made = self.lock();
-        let programs = made.programs.len();
+        let programs = self.programs.count();
         [
-            (Kind::ShaderModule, made.modules.len()),
+            (Kind::ShaderModule, self.modules.count()),
             (Kind::DescriptorSetLayout, programs),
             (Kind::PipelineLayout, programs),
-            (Kind::Pipeline, made.pipelines.len()),
+            (Kind::Pipeline, self.pipelines.count()),
         ]
     }
 
     /// True while a pass holds a pipeline.
     pub fn is_in_use(&self) -> bool {
-        self.lock().pipelines.iter().any(|(_, pipeline)| Arc::strong_count(pipeline) > 1)
+        self.pipelines.lock().iter().any(|(_, pipeline)| Arc::strong_count(pipeline) > 1)
     }
 
     /// Passes that are made from here on compile anew.
     pub fn clear(&self) {
-        let made = std::mem::take(&mut *self.lock());
-        drop(made);
+        self.pipelines.clear();
+        self.programs.clear();
+        self.modules.clear();
     }
 }
