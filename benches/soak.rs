@@ -101,12 +101,11 @@ impl Visitor for Soak {
             let fresh_ms = fresh.block()?;
             ratios.push(block_ms(&mut machine, &mut built.paper, block)? / fresh_ms);
         }
-        fresh.end();
         let slower = middle(ratios);
         drop(built);
 
-        let mut fresh = build(&machine, &study, &scene, S::RENDERED)?;
-        let is_equal = render(&mut machine, &mut fresh.paper, last)? == picture;
+        let is_equal = fresh.picture(last)? == picture.sha256();
+        fresh.end();
         println!(
             "| {} {} | {} | {} | {grown_kb} kB | {} | {} | {slower:.2} | {:.0} s |",
             S::PAPER,
@@ -145,16 +144,24 @@ fn middle(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Times a block of frames for each line that is read, as the fresh process.
+/// As the fresh process: times the next block of frames for each empty line that is read, and draws the frame that another
+/// line names.
 fn answer(machine: &mut Machine, paper: &mut impl Paper) -> Result<(), Error> {
-    for (block, line) in io::stdin().lines().enumerate() {
-        line.map_err(|error| Error::Input(format!("reading what to time: {error}")))?;
-        println!("{}", block_ms(machine, paper, block as u32)?);
+    let mut block = 0;
+    for line in io::stdin().lines() {
+        let line = line.map_err(|error| Error::Input(format!("reading what to do: {error}")))?;
+        if let Ok(number) = line.parse() {
+            paper.restart()?;
+            println!("{}", render(machine, paper, number)?.sha256());
+        } else {
+            println!("{}", block_ms(machine, paper, block)?);
+            block += 1;
+        }
     }
     Ok(())
 }
 
-/// A fresh process that times blocks of frames, one whenever it is asked to.
+/// A fresh process that times blocks of frames and draws, whenever it is asked to.
 struct Fresh {
     child: Child,
     answers: BufReader<ChildStdout>,
@@ -172,12 +179,23 @@ impl Fresh {
 
     /// Median of the next block's frames, milliseconds.
     fn block(&mut self) -> Result<f64, Error> {
-        let failed = |problem: String| Error::Input(format!("timing frames in a fresh process: {problem}"));
+        let answer = self.ask("")?;
+        answer.parse().map_err(|_| Error::Input(format!("a fresh process that times frames answered {answer:?}")))
+    }
+
+    /// SHA-256 of a frame's picture.
+    fn picture(&mut self, number: u32) -> Result<String, Error> {
+        self.ask(&number.to_string())
+    }
+
+    fn ask(&mut self, question: &str) -> Result<String, Error> {
         let input = self.child.stdin.as_mut().expect("the input is piped");
-        input.write_all(b"\n").and_then(|()| input.flush()).map_err(|error| failed(error.to_string()))?;
         let mut line = String::new();
-        self.answers.read_line(&mut line).map_err(|error| failed(error.to_string()))?;
-        line.trim().parse().map_err(|_| failed(format!("it answered {line:?}")))
+        let asked = writeln!(input, "{question}").and_then(|()| input.flush());
+        asked
+            .and_then(|()| self.answers.read_line(&mut line))
+            .map_err(|error| Error::Input(format!("asking a fresh process: {error}")))?;
+        Ok(line.trim().to_owned())
     }
 
     /// Its input ends, and so does it.

@@ -23,13 +23,21 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// The exit code of a program that ends so, 1 to 4.
+    pub fn code(&self) -> u8 {
+        match self {
+            Failure::Running(_) => 1,
+            Failure::Input(_) => 2,
+            Failure::NoDevice(_) => 3,
+            Failure::Regression => 4,
+        }
+    }
+
     /// Prints the error's one line on standard error and gives the exit code.
     pub fn report(self) -> u8 {
-        let (code, message) = match self {
-            Failure::Running(message) => (1, message),
-            Failure::Input(message) => (2, message),
-            Failure::NoDevice(message) => (3, message),
-            Failure::Regression => return 4,
+        let code = self.code();
+        let (Failure::Running(message) | Failure::Input(message) | Failure::NoDevice(message)) = self else {
+            return code;
         };
         /// Characters; a library's message may quote a whole file.
         const LONGEST: usize = 2_000;

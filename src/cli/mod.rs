@@ -34,7 +34,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use self::failure::Failure;
+pub use self::failure::Failure;
 pub use self::page::{axes_table, options_table};
 pub use self::part::read as read_part;
 pub use self::stress::File as StressFile;

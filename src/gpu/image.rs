@@ -127,7 +127,7 @@ impl ImageDesc {
             && known.contains(self.usage)
             && !(self.is_3d() && self.usage.intersects(flat));
         // SAFETY: the physical device is the device's own; the usage is not empty.
-        let supported = is_known.then(|| unsafe {
+        let asked = is_known.then(|| unsafe {
             device.instance().raw.get_physical_device_image_format_properties(
                 device.physical().raw,
                 self.format,
@@ -137,7 +137,11 @@ impl ImageDesc {
                 vk::ImageCreateFlags::empty(),
             )
         });
-        let fits = supported.and_then(Result::ok).is_some_and(|most| {
+        let most = match asked {
+            None | Some(Err(vk::Result::ERROR_FORMAT_NOT_SUPPORTED)) => None,
+            Some(answer) => Some(answer.context("asking for the sizes of image", &self.name)?),
+        };
+        let fits = most.is_some_and(|most| {
             let extent = most.max_extent;
             self.width <= extent.width
                 && self.height <= extent.height

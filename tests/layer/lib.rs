@@ -11,6 +11,7 @@
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary`, `present-fences` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
+//! | `FUMAROLE_LAYER_HEAPS` | `all` or bytes: memory beyond the device's heaps, or beyond so much, is refused |
 //! | `FUMAROLE_LAYER_VULKAN` | `1.1`: the version of Vulkan that the device has, where it is higher |
 //! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |
 //! | `FUMAROLE_LAYER_REPORT` | file that tells, when an instance is destroyed, of the calls, of labels and of what is alive |
@@ -18,6 +19,7 @@
 //! After a lost device, every submission and wait of the process fails the same way.
 
 mod calls;
+mod heap;
 mod labels;
 mod lend;
 mod mask;
@@ -118,6 +120,7 @@ unsafe extern "system" fn create_instance(
             calls::born("Instance");
             calls::resolve(&|name| next_instance_proc(*instance, name));
             mask::resolve(&|name| next_instance_proc(*instance, name));
+            heap::resolve(&|name| next_instance_proc(*instance, name));
             lend::resolve(&|name| next_instance_proc(*instance, name));
             labels::resolve(&|name| next_instance_proc(*instance, name));
         }
@@ -169,6 +172,7 @@ unsafe extern "system" fn create_device(
         restore();
         if result == vk::Result::SUCCESS {
             calls::born("Device");
+            heap::learn(physical);
             calls::resolve(&|name| next_device_proc(*device, name));
             lend::resolve(&|name| next_device_proc(*device, name));
             labels::resolve(&|name| next_device_proc(*device, name));
@@ -203,6 +207,7 @@ fn own(name: &str) -> vk::PFN_vkVoidFunction {
         "vkCreateDevice" => create_device as *const c_void,
         other => mask::hook(other)
             .or_else(|| lend::hook(other))
+            .or_else(|| heap::hook(other))
             .or_else(|| labels::hook(other))
             .or_else(|| presents::hook(other))
             .or_else(|| calls::hook(other))?,

@@ -8,21 +8,47 @@ use std::time::Instant;
 use super::program::{Program, burning, caustics, folder, fumarole, gas, terrain};
 use crate::common::beside_others;
 
-/// A program that is refused `bytes` under `name`, within the rule. A map of 2 x 2 samples, `two.asc`, lies beside them.
-fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
+/// Memory of a program that reads next to nothing, on two threads: what its libraries write to, stacks and heap. The one
+/// that takes the most, `caustics`, takes 10 MiB.
+const OWN_KIB: usize = 16 << 10;
+/// Memory that a refusal may take besides, and as many times what it reads.
+const SPARE_KIB: usize = 64 << 10;
+const TIMES: usize = 16;
+
+/// A program that is refused `bytes` under `name`, within the rule. A map of 2 x 2 samples, `two.asc`, and a record,
+/// `record.json`, lie beside them.
+pub(super) fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
+    refused_of(program, &[(name, bytes)], parts);
+}
+
+/// As [`refused`], of several files, of which the first is named; one in a folder by that.
+pub(super) fn refused_of(program: fn() -> Program, files: &[(&str, &[u8])], parts: &[&str]) {
+    let size: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
+    refused_in(OWN_KIB + SPARE_KIB + TIMES * size / 1024, program, files, parts);
+}
+
+/// As [`refused_of`], in so much memory.
+fn refused_in(limit_kib: usize, program: fn() -> Program, files: &[(&str, &[u8])], parts: &[&str]) {
     let out = folder();
-    let path = out.path().join(name);
-    fs::write(&path, bytes).unwrap();
     fs::write(out.path().join("two.asc"), "ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n").unwrap();
-    let program = program().arg(&path);
-    let program = if name.ends_with("json") { program.arg(&path) } else { program };
-    // Address space of the program itself: its libraries, threads, and what their allocators reserve without using it.
-    const OWN_KIB: usize = 384 << 10;
-    let limit_kib = OWN_KIB + (64 << 10) + 16 * bytes.len() / 1024;
-    let script = format!("ulimit -v {limit_kib}; {}; code=$?; times; exit $code", program.for_shell());
-    let run = || std::process::Command::new("sh").arg("-c").arg(&script).current_dir(out.path()).output().unwrap();
-    let output = beside_others(run);
-    let seconds = seconds(&String::from_utf8_lossy(&output.stdout));
+    fs::write(out.path().join("record.json"), include_str!("../../data/record.json")).unwrap();
+    for (name, bytes) in files {
+        let path = out.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    let name = files[0].0;
+    let named = name.split_once('/').map_or(name, |(folder, _)| folder);
+    // Private memory that can be written: reserved addresses and mapped files do not count.
+    let script = format!(
+        "ulimit -c 0; ulimit -d {limit_kib}; timeout -s KILL 60 {}; code=$?; times; exit $code",
+        program().arg(out.path().join(named)).for_shell()
+    );
+    let mut shell = std::process::Command::new("sh");
+    shell.arg("-c").arg(&script).current_dir(out.path()).stdin(std::process::Stdio::null());
+    // Each thread has a stack of its own, a backtrace reads the whole program, and one without memory may never end.
+    shell.env("RAYON_NUM_THREADS", "2").env_remove("RUST_BACKTRACE");
+    let output = beside_others(|| shell.output().unwrap());
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{name}: {stderr}");
     assert!(stderr.starts_with("error: ") && stderr.lines().count() == 1, "{name}: {stderr}");
@@ -31,7 +57,9 @@ fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
         assert!(stderr.contains(part), "{name}: {part:?} is missing: {stderr}");
     }
     // Half as much again: time on a busy core counts for more.
-    assert!(seconds < 1.5 * (1.0 + bytes.len() as f64 / 1e8), "{name}: {seconds} s");
+    let seconds = seconds(&String::from_utf8_lossy(&output.stdout));
+    let size: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
+    assert!(seconds < 1.5 * (1.0 + size as f64 / 1e8), "{name}: {seconds} s");
 }
 
 /// Processor time of a shell's children, by the second line of its `times`: `0m0.12s 0m0.03s`.
@@ -41,8 +69,24 @@ fn seconds(times: &str) -> f64 {
     parts.map(|(minutes, seconds)| 60.0 * minutes.parse::<f64>().unwrap() + seconds.parse::<f64>().unwrap()).sum()
 }
 
-fn mesh() -> Program {
+pub(super) fn mesh() -> Program {
     caustics("render --mesh")
+}
+
+/// The own share is what the programs take, so that none of them spends what the rule grants besides.
+#[test]
+fn a_tiny_file_takes_no_more_than_the_program() {
+    let tiny = |program, name, part| refused_in(OWN_KIB, program, &[(name, &b"{"[..])], &[part]);
+    tiny(mesh, "a.obj", "a.obj");
+    tiny(|| gas("render --volume-file"), "a.nrrd", "a.nrrd");
+    tiny(|| terrain("render --map"), "a.asc", "a.asc");
+    tiny(|| terrain("render --variant tiled-compute --stream --map"), "a.tif", "a.tif");
+    tiny(|| terrain("collide --bodies"), "a.csv", "a.csv");
+    tiny(|| burning("render --mesh box --texture"), "a.png", "a.png");
+    tiny(|| burning("render --mesh box --materials"), "a.toml", "a.toml");
+    tiny(|| fumarole("compare record.json"), "a.json", "a.json");
+    tiny(|| fumarole("report"), "a.json", "a.json");
+    tiny(|| fumarole("assemble"), "parts/a.png.part.json", "a.png.part.json");
 }
 
 #[test]
@@ -205,8 +249,8 @@ fn volumes_that_promise() {
     refused(last, "segments.nvdb", &segment.repeat(150_000), &["it has no grid 4000000"]);
 }
 
-/// A grey PNG of zeros without its end.
-fn cut_png(side: u32) -> Vec<u8> {
+/// A PNG of black pixels.
+pub(super) fn black_png(side: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, side, side);
     encoder.set_color(png::ColorType::Grayscale);
@@ -220,6 +264,12 @@ fn cut_png(side: u32) -> Vec<u8> {
     }
     stream.finish().unwrap();
     writer.finish().unwrap();
+    bytes
+}
+
+/// As [`black_png`], without its end.
+pub(super) fn cut_png(side: u32) -> Vec<u8> {
+    let mut bytes = black_png(side);
     bytes.truncate(bytes.len() - 40);
     bytes
 }
@@ -235,7 +285,7 @@ fn small_pictures_of_many_pixels() {
 
 #[test]
 fn records_of_many_values() {
-    let compare = || fumarole("compare");
+    let compare = || fumarole("compare record.json");
     let example = include_str!("../../data/record.json");
     let marker = "\"config\": {";
     assert!(example.contains(marker));

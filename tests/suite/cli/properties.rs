@@ -13,6 +13,7 @@ use fumarole::scene::random::Random;
 
 use super::program::{Program, folder, fumarole};
 use crate::common::beside_others;
+use crate::faults::Layer;
 
 /// Draws of each paper; more with this variable.
 const CASES_VARIABLE: &str = "FUMAROLE_CASES";
@@ -161,9 +162,10 @@ fn whatever_the_ranges_hold_ends_well() {
     assert!(drawn > 4 && (drawn as usize) < cases.0.len(), "{drawn} of {}", cases.0.len());
 }
 
-/// Runs to its end, or to where it has said that it takes long. True for exit code 0.
+/// Runs to its end, or to where it has said that it takes long, on a device that gives no more memory than its heaps have.
+/// True for exit code 0.
 pub fn ends_well(program: &Program) -> Result<bool, String> {
-    let out = folder();
+    let (out, layer) = (folder(), Layer::new());
     let (stdout, stderr) = (out.path().join("stdout"), out.path().join("stderr"));
     let script = format!("ulimit -v {LIMIT_KIB}; exec {}", program.for_shell());
     let said = || fs::read_to_string(&stderr).unwrap_or_default();
@@ -171,6 +173,8 @@ pub fn ends_well(program: &Program) -> Result<bool, String> {
         let mut child = Command::new("sh")
             .arg("-c")
             .arg(&script)
+            .envs(layer.environment(false))
+            .env("FUMAROLE_LAYER_HEAPS", "all")
             .current_dir(out.path())
             .stdin(Stdio::null())
             .stdout(fs::File::create(&stdout).unwrap())

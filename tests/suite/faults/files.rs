@@ -1,60 +1,140 @@
-//! Killed programs, full disks, folders that take no file, and two processes in one folder.
+//! Killed programs, full disks, folders that take no file, and two processes in one folder. Signals come at moments that are
+//! drawn; `FUMAROLE_TEST_SEED` draws others.
 
+use std::collections::HashSet;
 use std::env;
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Command;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use fumarole::image::read_png;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
 
 use super::{PAPERS, Paper};
-use crate::cli::program::{ONCE, assert_schema, entries, folder, read_json};
+use crate::cli::program::{ONCE, Program, Running, assert_schema, entries, folder, read_json};
+use crate::common::beside_others;
 
-const FILES: &str = "--quiet --json a.json --csv a.csv --trace a.trace --image a.png";
+const DOCUMENTS: &str = "--quiet --json a.json --csv a.csv --trace a.trace";
+const ENDLESS: &str = "--frames 100000 --repeat 10000 --warmup 1 --no-limits";
+/// Far above what an interrupted program takes on a busy machine.
+const SOON: Duration = Duration::from_secs(20);
 
-/// Files of a bench of caustics, a picture of each variant among them.
-const WRITTEN: [&str; 8] =
-    ["a-culled.png", "a-hit.png", "a-level-map-smart.png", "a-volumetric.png", "a.csv", "a.json", "a.png", "a.trace"];
-
-fn bench(paper: &Paper, out: &Path) -> crate::cli::program::Program {
-    paper.run("bench").args(FILES).args(ONCE).inside(out)
+/// A bench that writes every document.
+fn bench(paper: &Paper, out: &Path) -> Program {
+    let program = paper.run("bench").args(DOCUMENTS).inside(out);
+    // Of many variants, whose files are written as those of one are.
+    match paper.name {
+        "gas" => program.args("--variant table"),
+        "terrain" => program.args("--variant gpu-compute"),
+        _ => program,
+    }
 }
 
-/// Asserts that each of the bench's files is there and whole.
+fn with_picture(paper: &Paper, out: &Path) -> Program {
+    bench(paper, out).args("--image a.png")
+}
+
+/// Asserts that each file in a folder is whole, but for temporary ones.
 fn assert_whole(out: &Path) {
-    assert_schema(&read_json(&out.join("a.json")));
-    for name in WRITTEN.iter().filter(|name| name.ends_with(".png")) {
-        read_png(&out.join(name)).unwrap();
+    for name in entries(out) {
+        let path = out.join(&name);
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("json") => assert_schema(&read_json(&path)),
+            Some("trace") => drop(read_json(&path)),
+            Some("csv") => assert!(fs::read_to_string(&path).unwrap().ends_with('\n'), "{name}"),
+            Some("png") => drop(read_png(&path).unwrap()),
+            Some("tmp") => {}
+            _ => panic!("{name} was not asked for"),
+        }
     }
-    serde_json::from_slice::<serde_json::Value>(&fs::read(out.join("a.trace")).unwrap()).unwrap();
-    assert!(fs::read_to_string(out.join("a.csv")).unwrap().ends_with('\n'));
+}
+
+/// A part of a time, drawn evenly.
+fn part(random: &mut Pcg32, of: Duration) -> Duration {
+    of.mul_f64(f64::from(random.next_u32()) / f64::from(u32::MAX))
+}
+
+fn send(signal: Signal, running: &Running) {
+    // It may have ended by itself.
+    let _ = kill(Pid::from_raw(running.id().try_into().unwrap()), signal);
+}
+
+/// Waits until a program has begun so many files, or has ended.
+fn await_files(count: usize, running: &mut Running, out: &Path) {
+    let mut begun = HashSet::new();
+    let older: HashSet<String> = entries(out).into_iter().collect();
+    while begun.len() < count && !running.has_ended() {
+        begun.extend(entries(out).into_iter().filter(|name| name.ends_with(".tmp") && !older.contains(name)));
+        thread::sleep(Duration::from_micros(50));
+    }
+}
+
+fn assert_killed(running: Running, out: &Path) {
+    send(Signal::SIGKILL, &running);
+    let status = running.end().status;
+    assert!(status.success() || status.signal() == Some(Signal::SIGKILL as i32), "{status}");
+    assert_whole(out);
 }
 
 #[test]
 fn a_killed_run_leaves_whole_files_and_its_rest_is_swept() {
-    let out = folder();
-    let paper = &PAPERS[2];
-    bench(paper, out.path()).run().succeeded();
-    let begun = std::time::Instant::now();
-    bench(paper, out.path()).run().succeeded();
-    let whole_run = begun.elapsed();
-    for part in 0..10 {
-        let running = bench(paper, out.path()).start();
-        thread::sleep(whole_run * part / 8);
-        let id = running.id().to_string();
-        // It may have ended by itself.
-        let _ = Command::new("kill").args(["-KILL", &id]).status().unwrap();
-        running.end();
-        assert_whole(out.path());
+    let seed = env::var("FUMAROLE_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
+    let mut random = Pcg32::new(seed, 0);
+    for paper in &PAPERS {
+        beside_others(|| assert_killed_runs_leave_whole_files(paper, &mut random));
     }
-    // As if it had been killed while it wrote: Linux gives no process this number.
-    let name = |home: &str| format!(".fumarole-4294967295-{home}-x.tmp");
-    fs::write(out.path().join(name("00000000")), "half").unwrap();
-    bench(paper, out.path()).run().succeeded();
-    let of_another_machine = name("00000000");
-    assert_eq!(entries(out.path()), [&[of_another_machine.as_str()][..], &WRITTEN[..]].concat());
+}
+
+fn assert_killed_runs_leave_whole_files(paper: &Paper, random: &mut Pcg32) {
+    let out = folder();
+    let out = out.path();
+    // Of another machine, whose processes are not known: nobody sweeps it.
+    fs::write(out.join(".fumarole-4294967295-00000000-x.tmp"), "half").unwrap();
+    with_picture(paper, out).args(ONCE).run().succeeded();
+    let written = entries(out);
+    let files = written.len() - 1;
+    let begun = Instant::now();
+    with_picture(paper, out).args(ONCE).run().succeeded();
+    let whole_run = begun.elapsed();
+    for _ in 0..3 {
+        let running = with_picture(paper, out).args(ONCE).start();
+        thread::sleep(part(random, whole_run));
+        assert_killed(running, out);
+    }
+    // Writing takes a small part of a run.
+    for _ in 0..3 {
+        let mut running = with_picture(paper, out).args(ONCE).start();
+        // The files that show beforehand that some can be made are gone by then.
+        thread::sleep(whole_run / 4);
+        await_files(1 + random.next_u32() as usize % files, &mut running, out);
+        assert_killed(running, out);
+    }
+    with_picture(paper, out).args(ONCE).run().succeeded();
+    assert_eq!(entries(out), written, "{}", paper.name);
+    for signal in [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP] {
+        // The tests may run under `nohup` themselves.
+        let running = with_picture(paper, out).args(ENDLESS).under("env --default-signal=HUP").start();
+        thread::sleep(part(random, whole_run));
+        send(signal, &running);
+        let sent = Instant::now();
+        let ended = running.end();
+        let what = format!("{} by {signal}: {} after {:?}: {}", paper.name, ended.status, sent.elapsed(), ended.stderr);
+        assert!(sent.elapsed() < SOON, "{what}");
+        // It has measured something, or nothing, or was not yet listening.
+        match ended.status.code() {
+            Some(0) => assert_eq!(ended.stderr, "", "{what}"),
+            Some(_) => ended.refused(1, &["interrupted"]),
+            None => assert_eq!(ended.status.signal(), Some(signal as i32), "{what}"),
+        }
+        assert_eq!(entries(out), written, "{what}");
+        assert_whole(out);
+    }
 }
 
 /// Programs that write to full devices and sealed folders end with one line; older files stay.
@@ -111,14 +191,40 @@ fn on_disk(options: &str, test: &str, body: impl FnOnce(&Path)) {
 
 #[test]
 fn a_full_disk_keeps_older_files() {
-    // Two pages, of which the older record takes one.
-    on_disk("size=8192", "faults::files::a_full_disk_keeps_older_files", |out| {
-        fs::write(out.join("a.json"), "older").unwrap();
-        for paper in &PAPERS[1..3] {
-            let ended = paper.run("bench --quiet --json a.json").args(ONCE).inside(out).run();
-            ended.refused(2, &["a.json", "No space left"]);
-            assert_eq!(fs::read_to_string(out.join("a.json")).unwrap(), "older");
-            assert_eq!(entries(out), ["a.json"]);
+    // Four pages, of which the older documents take three.
+    on_disk("size=16384", "faults::files::a_full_disk_keeps_older_files", |out| {
+        let older = ["a.csv", "a.json", "a.trace"];
+        for name in older {
+            fs::write(out.join(name), "older").unwrap();
+        }
+        for paper in &PAPERS {
+            bench(paper, out).args(ONCE).run().refused(2, &["a.json", "No space left"]);
+            assert_eq!(entries(out), older, "{}", paper.name);
+            for name in older {
+                assert_eq!(fs::read_to_string(out.join(name)).unwrap(), "older", "{}: {name}", paper.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn a_disk_that_a_picture_fills_throws_no_measurement_away() {
+    // Two pages, of which the older picture takes one; a new one takes two by itself.
+    on_disk("size=8192", "faults::files::a_disk_that_a_picture_fills_throws_no_measurement_away", |disk| {
+        let picture = disk.join("a.png");
+        fs::write(&picture, "older").unwrap();
+        for paper in &PAPERS {
+            let out = folder();
+            let large = bench(paper, out.path()).args("--size 256x192").arg("--image").arg(&picture);
+            large.args(ONCE).run().refused(2, &["a.png", "No space left"]);
+            assert_eq!(entries(disk), ["a.png"], "{}", paper.name);
+            assert_eq!(fs::read_to_string(&picture).unwrap(), "older", "{}", paper.name);
+            assert_eq!(entries(out.path()), ["a.csv", "a.json", "a.trace"], "{}", paper.name);
+            assert_whole(out.path());
+            let run = &read_json(&out.path().join("a.json"))["runs"][0];
+            let warnings = run["warnings"].to_string();
+            assert!(warnings.contains("without a picture") && warnings.contains("No space left"), "{warnings}");
+            assert!(run["image"].is_null() && !run["frame_ms"]["samples"].as_array().unwrap().is_empty(), "{run}");
         }
     });
 }
@@ -136,13 +242,22 @@ fn a_read_only_folder_is_told_before_the_work() {
 #[test]
 fn two_processes_in_one_folder_leave_whole_files() {
     let out = folder();
-    for _ in 0..3 {
-        let both = [&PAPERS[2], &PAPERS[3]].map(|paper| bench(paper, out.path()).start());
-        thread::sleep(Duration::from_millis(1));
-        for running in both {
-            running.end().succeeded();
-        }
-        assert_whole(out.path());
-        assert_eq!(entries(out.path()), WRITTEN);
+    let out = out.path();
+    for paper in &PAPERS {
+        with_picture(paper, out).args(ONCE).run().succeeded();
+    }
+    let written = entries(out);
+    for (index, paper) in PAPERS.iter().enumerate() {
+        let both = [paper, &PAPERS[(index + 1) % PAPERS.len()]];
+        beside_others(|| {
+            let running = both.map(|paper| with_picture(paper, out).args(ONCE).start());
+            for running in running {
+                running.end().succeeded();
+            }
+        });
+        assert_eq!(entries(out), written, "{}", paper.name);
+        assert_whole(out);
+        let of = read_json(&out.join("a.json"))["runs"][0]["paper"].clone();
+        assert!(both.iter().any(|paper| of == paper.name), "{}: {of}", paper.name);
     }
 }

@@ -400,3 +400,15 @@ fn pictures_with_fewer_indices_are_those_with_all() {
         }
     }
 }
+
+/// A device whose heaps hold less than they say, as where other programs have the rest.
+#[test]
+fn memory_that_is_gone_is_told() {
+    for paper in &PAPERS {
+        let layer = Layer::new();
+        let program = layer.before(paper.run("render --quiet --image a.png"), false);
+        let ended = program.env("FUMAROLE_LAYER_HEAPS", "10000").run();
+        assert_eq!(layer.report(&ended).alive, [""; 0], "{}: {}", paper.name, ended.stderr);
+        ended.refused(1, &["out of memory"]);
+    }
+}

@@ -1,6 +1,6 @@
 //! Every call of every variant fails in turn, round after round in one process: the machine is opened, the paper made, measured
-//! and drawn, and all of it given up. A round takes a small part of what a program takes; exit codes and files are those of the
-//! programs in [`super::calls`].
+//! and drawn, its record and its picture take the place of old files, and all of it is given up. A round takes a small part of
+//! what a program takes.
 
 use std::collections::HashSet;
 use std::env;
@@ -14,7 +14,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
+use fumarole::cli::Failure;
 use fumarole::gpu::{self, Instance, PhysicalDevice};
+use fumarole::image::{read_png, write_png};
 use fumarole::measure::bench::{Bench, Loaded, load};
 use fumarole::measure::machine::{Machine, MachineOptions};
 use fumarole::measure::measure::{Schedule, Watch};
@@ -22,10 +24,13 @@ use fumarole::measure::parameter::Given;
 use fumarole::measure::picture::render;
 use fumarole::measure::study::{Study, Visitor};
 use fumarole::measure::{Error, Paper as _, Variant};
-use fumarole::papers;
+use fumarole::report::{Record, environment, json};
+use fumarole::{file, papers};
+use tempfile::TempDir;
 
 use super::calls::{FAILURES, HARMLESS, MEMORY, code};
 use super::{Layer, PAPERS, Paper, Report};
+use crate::cli::program::{entries, folder};
 use crate::common::wanted_device;
 
 /// Paper whose rounds a process is to run, the file that keeps what was found, and that which tells the layer of rounds.
@@ -126,6 +131,7 @@ fn rounds_of_a_process() {
         calls: 0,
         variants: 0,
         has_more: false,
+        out: folder(),
     };
     papers::each(&mut rounds).unwrap();
     if !rounds.has_more {
@@ -147,6 +153,8 @@ struct Rounds {
     variants: usize,
     /// It ended before all was done.
     has_more: bool,
+    /// Folder of the files of each round.
+    out: TempDir,
 }
 
 impl Visitor for Rounds {
@@ -162,8 +170,11 @@ impl Visitor for Rounds {
         let anchor = Instance::new(false)?;
         for &variant in S::Variant::ALL {
             self.variants += 1;
-            let (whole, report) = self.run(&anchor, variant.as_str(), "", || bench(&study, &loaded, variant));
-            whole?;
+            let out = self.out.path().to_owned();
+            let work = || bench(&study, &loaded, variant, &out);
+            let (whole, report) = self.run(&anchor, variant.as_str(), "", work);
+            whole.unwrap();
+            assert_eq!(written(&out), Ok([true; FILES.len()]), "{}", variant.as_str());
             for (name, number, failure) in every(&report.calls) {
                 let failing = format!("{name}@{number}:{failure}");
                 let call = format!("{} {} {failing}", S::PAPER, variant.as_str());
@@ -175,9 +186,10 @@ impl Visitor for Rounds {
                     self.has_more = true;
                     return Ok(());
                 }
-                let work = || panic::catch_unwind(AssertUnwindSafe(|| bench(&study, &loaded, variant)));
+                let work = || panic::catch_unwind(AssertUnwindSafe(|| bench(&study, &loaded, variant, &out)));
                 let (outcome, report) = self.run(&anchor, variant.as_str(), &failing, work);
-                note(&mut self.found, &call, judged((name, number, failure), outcome, &report));
+                let judged = judged((name, number, failure), outcome, &report, written(&out));
+                note(&mut self.found, &call, judged);
             }
         }
         Ok(())
@@ -194,6 +206,9 @@ impl Rounds {
         work: impl FnOnce() -> T,
     ) -> (T, Report) {
         self.number += 1;
+        for name in FILES {
+            fs::write(self.out.path().join(name), OLD).unwrap();
+        }
         fs::write(&self.round, format!("{}/{variant} {failing}", self.number)).unwrap();
         let outcome = work();
         fs::write(&self.round, format!("{}/after ", self.number)).unwrap();
@@ -216,39 +231,56 @@ fn study<S: Study>(options: &str) -> Result<S, Error> {
     Ok(study.alternatives().swap_remove(0))
 }
 
+/// A round's record and picture.
+const FILES: [&str; 2] = ["a.json", "a.png"];
+/// Their contents before it.
+const OLD: &str = "old";
+
 /// As the program's `bench` with a picture, from a device that is not open to one that is closed.
-fn bench<S: Study>(study: &S, loaded: &Loaded<S>, variant: S::Variant) -> Result<(), Error> {
+fn bench<S: Study>(study: &S, loaded: &Loaded<S>, variant: S::Variant, out: &Path) -> Result<(), Failure> {
     static NEVER: AtomicBool = AtomicBool::new(false);
     let options = MachineOptions { device: Some(wanted_device()), ..MachineOptions::default() };
     let mut machine = Machine::open(&options, S::NEEDS)?;
     let schedule = Schedule { warmup: 1, frames: 2, repeat: 1, min_time_s: 0.0 };
     let mut watch = Watch { interrupted: &NEVER, progress: &mut |_, _| {} };
     let bench = Bench { study, loaded, variants: &[variant], schedule, limits: None };
-    bench.measure_and(&mut machine, &mut watch, |machine, paper| {
-        paper.restart()?;
-        render(machine, paper, 0).map(drop)
+    let [record, picture] = FILES.map(|name| out.join(name));
+    // A picture that fails throws no measurement away.
+    let mut drawn = Ok(());
+    let measured = bench.measure_and(&mut machine, &mut watch, |machine, paper| {
+        let rendered = paper.restart().map_err(Error::from).and_then(|()| render(machine, paper, 0));
+        drawn = rendered.map_err(Failure::from).and_then(|pixels| Ok(write_png(&picture, &pixels)?));
+        Ok(())
     })?;
-    Ok(())
+    let runs = measured.into_iter().map(|measured| measured.run).collect();
+    let text = json::to_string(&Record::new(machine.environment(), environment::command(), runs)).unwrap();
+    file::write_unsynced(&record, |file| file.write_all(text.as_bytes()))?;
+    drawn
 }
 
-/// The exit code of a program that ends with this error, as `src/cli/failure.rs` maps those that a failing call may lead to.
-fn exit_code(error: &Error) -> i32 {
-    use gpu::Error as E;
-    match error {
-        Error::Gpu(E::NoLoader { .. } | E::NoInstance { .. } | E::NoDevice { .. } | E::MissingFeature { .. }) => 3,
-        // A call asks for kinds of images, too, and its failure is told as a lack of them.
-        Error::Gpu(E::OutOfMemory { .. } | E::Vulkan { .. } | E::Allocation { .. } | E::Unsupported { .. }) => 1,
-        // Bad input, or a fault of ours: neither is what a call's failure is.
-        _ => 2,
+/// True of each file that is a whole new one, false of an old one.
+fn written(out: &Path) -> Result<[bool; FILES.len()], String> {
+    let there = entries(out);
+    if there != FILES {
+        return Err(format!("{there:?} are there"));
+    }
+    let is_old = |name: &str| fs::read(out.join(name)).is_ok_and(|bytes| bytes == OLD.as_bytes());
+    let [record, picture] = FILES.map(|name| out.join(name));
+    let is_whole = [json::read(&record).is_ok(), read_png(&picture).is_ok()];
+    match FILES.iter().zip(is_whole).find(|(name, is_whole)| !is_whole && !is_old(name)) {
+        Some((name, _)) => Err(format!("half of {name} is there")),
+        None => Ok(is_whole),
     }
 }
 
 /// Nothing is left alive, and the failure is told in one line and by the exit code.
 fn judged(
     (name, number, failure): (&str, usize, &str),
-    outcome: thread::Result<Result<(), Error>>,
+    outcome: thread::Result<Result<(), Failure>>,
     report: &Report,
+    written: Result<[bool; FILES.len()], String>,
 ) -> Result<(), String> {
+    let written = written?;
     let outcome = outcome.map_err(|_| "it panicked".to_owned())?;
     if report.alive != ["Instance 1"] {
         return Err(format!("{:?} are alive", report.alive));
@@ -257,8 +289,11 @@ fn judged(
         // A wait is asked again where the machine is slow, and the round that was counted had more of them.
         (Ok(()), None) if report.count(name) < number => Ok(()),
         (Ok(()), Some(_)) if MEMORY.contains(&name) || name == HARMLESS && failure != "lost" => Ok(()),
+        (Err(_), Some(_)) if written == [true; FILES.len()] => {
+            Err("it failed with all that it was to write".to_owned())
+        }
         (Err(error), Some(_)) => {
-            let (line, expected, found) = (error.to_string(), code(name, failure), exit_code(&error));
+            let (line, expected, found) = (error.to_string(), code(name, failure), i32::from(error.code()));
             if line.lines().count() != 1 || line.contains("allocating 0 bytes") {
                 return Err(format!("it says {line:?}"));
             }
@@ -272,7 +307,8 @@ fn judged(
 #[test]
 fn rounds_are_judged_by_exit_codes() {
     let report = Report::of("frames 0\nalive Instance 1\nfailed vkCreateFence\n");
-    let judge = |name: &str, error: gpu::Error| judged((name, 1, "host"), Ok(Err(error.into())), &report);
+    let judge =
+        |name: &str, error: gpu::Error| judged((name, 1, "host"), Ok(Err(error.into())), &report, Ok([false; 2]));
     let lost = || gpu::Error::OutOfMemory { object: "fence".to_owned(), bytes: 0 };
     let absent = |reason: &str| gpu::Error::NoDevice { reason: reason.to_owned() };
     judge("vkCreateFence", lost()).unwrap();
