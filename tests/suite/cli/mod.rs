@@ -27,6 +27,7 @@ mod interruption;
 mod kubernetes;
 mod lava;
 mod lava_chapter_9;
+mod loops;
 mod meshes;
 mod outputs;
 mod pages;
