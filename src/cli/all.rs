@@ -9,6 +9,7 @@ use super::bench;
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
+use super::pool;
 use super::report;
 use super::watch::interrupted;
 use crate::measure::Error;
@@ -70,6 +71,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let page = arguments.report.clone().map(|page| page.unwrap_or_else(|| output.out.join("report.html")));
     page.iter().try_for_each(|page| outcome::check_file(page))?;
 
+    pool::start()?;
     let mut pictures = Pictures { folder: &output.out, files: Vec::new() };
     papers::each(&mut pictures)?;
     outcome::check_apart(output.files().chain(&page).chain(&pictures.files), &[])?;

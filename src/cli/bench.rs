@@ -10,9 +10,8 @@ use super::outcome;
 use super::processes;
 use super::spelling;
 use super::watch::{interrupted, patiently, watched};
-use crate::content;
 use crate::gpu::{Mode, RenderDoc};
-use crate::image::suffixed;
+use crate::image::{suffixed, write_png_hashed};
 use crate::measure::bench::{Bench, Loaded, build, load_for};
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::picture;
@@ -188,10 +187,6 @@ fn capture_frame<S: Study>(
     Ok(file)
 }
 
-fn file_sha256(path: &Path) -> Result<String, Failure> {
-    content::file_sha256(path).map_err(|e| Failure::Running(format!("reading {} again: {e}", path.display())))
-}
-
 /// Files of the variants' pictures: the first gets the name that was given, the others' have the variant before its ending.
 pub fn picture_files<V: Variant>(named: &Path, variants: &[V]) -> Vec<PathBuf> {
     let others = variants.iter().skip(1).map(|variant| suffixed(named, &format!("-{}", variant.as_str())));
@@ -209,7 +204,7 @@ pub fn write_picture<S: Study>(
 ) -> Result<ImageFile, Failure> {
     let mut built = build(machine, study, &loaded.scene, variant)?;
     let picture = picture::render(machine, &mut built.paper, number)?;
-    crate::image::write_png(path, &picture)?;
+    let sha256 = write_png_hashed(path, &picture)?;
     machine.check_validation()?;
-    Ok(ImageFile { path: path.display().to_string(), sha256: file_sha256(path)? })
+    Ok(ImageFile { path: path.display().to_string(), sha256 })
 }

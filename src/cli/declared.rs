@@ -12,7 +12,7 @@ use super::options::{CommonArgs, DepthArgs, FRAMES_HELP, MachineArgs, REPEAT_HEL
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, help, loading, passes, render, spelling};
+use super::{bench, help, loading, passes, pool, render, spelling};
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
@@ -318,6 +318,10 @@ impl<'a, S: Study> Typed<'a, S> {
 /// Runs the verb that was typed.
 pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let Some((verb, matches)) = matches.subcommand() else { return Ok(()) };
+    // The window's own process reads nothing, and is to stay the only thread until it draws.
+    if verb != "view" {
+        pool::start()?;
+    }
     loading::begin(matches);
     let result = run_verb::<S>(verb, matches);
     loading::end();

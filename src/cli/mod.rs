@@ -16,6 +16,7 @@ mod outcome;
 mod page;
 mod part;
 mod passes;
+mod pool;
 mod processes;
 mod render;
 mod report;

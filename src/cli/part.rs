@@ -11,7 +11,7 @@ use super::options::MachineArgs;
 use super::outcome;
 use crate::content;
 use crate::file;
-use crate::image::{Rgba8, read_png, suffixed};
+use crate::image::{self, CheckedPng, Rgba8, suffixed};
 use crate::measure::Variant;
 use crate::measure::bench::inputs;
 use crate::measure::machine::Machine;
@@ -148,7 +148,19 @@ impl Part {
 
     /// True when the file is the picture that was drawn.
     pub fn has_picture(&self, picture: &Path) -> bool {
-        read_png(picture).is_ok_and(|pixels| pixels.sha256() == self.sha256)
+        matches!(self.read_picture(picture), Ok(Some(_)))
+    }
+
+    /// The picture that was drawn; `None` where the file is another one.
+    ///
+    /// # Errors
+    /// As [`read_png`](image::read_png).
+    pub fn read_picture(&self, picture: &Path) -> Result<Option<Rgba8>, image::Error> {
+        let found = CheckedPng::read(picture)?;
+        if found.size() != (self.size[0], self.rows[1] - self.rows[0]) {
+            return Ok(None);
+        }
+        Ok(Some(found.into_picture()?).filter(|picture| picture.sha256() == self.sha256))
     }
 
     /// Writes what stands beside the picture, which was written before it.

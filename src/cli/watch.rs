@@ -93,7 +93,8 @@ pub fn patiently<T>(quiet: bool, what: &str, work: impl FnOnce() -> T) -> T {
     let started = Instant::now();
     thread::scope(|scope| {
         let (end, ended) = mpsc::channel::<()>();
-        scope.spawn(move || {
+        // Without a thread for it nothing is said.
+        let _ = thread::Builder::new().spawn_scoped(scope, move || {
             let mut silence = SILENCE;
             while ended.recv_timeout(silence) == Err(RecvTimeoutError::Timeout) {
                 say(&format!("note: {what} goes on, {:.0} s so far", started.elapsed().as_secs_f64()));

@@ -25,7 +25,7 @@ pub mod y4m;
 pub use self::compare::{Difference, compare};
 pub use self::error::Error;
 pub use self::picture::Rgba8;
-pub use self::png::{read_png, read_png_within, write_png};
+pub use self::png::{CheckedPng, read_png, read_png_within, write_png, write_png_hashed};
 pub use self::preview::preview;
 pub use self::raster::{Raster, Samples, Shape};
 pub use self::statistics::Statistics;

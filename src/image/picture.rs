@@ -57,6 +57,12 @@ impl Rgba8 {
         &self.pixels
     }
 
+    /// As [`pixels`](Self::pixels).
+    pub fn into_pixels(self) -> Vec<[u8; 4]> {
+        // As long as four bytes a pixel, and allocated for as many.
+        bytemuck::allocation::try_cast_vec(self.pixels).unwrap_or_else(|(_, pixels)| pixels.as_chunks().0.to_vec())
+    }
+
     /// The rows of a range within the height.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ::png::{
     BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, Filter, Limits, Reader, Transformations,
@@ -10,7 +11,7 @@ use super::error::one_line;
 use super::raster::{Raster, Samples};
 use super::view::{Ramp, ramped};
 use super::{Error, Rgba8, view};
-use crate::file;
+use crate::{content, file};
 
 /// The largest 2-D image that desktop GPUs commonly take, pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -37,14 +38,57 @@ pub fn read_png(path: &Path) -> Result<Rgba8, Error> {
 /// # Errors
 /// As [`read_png`].
 pub fn read_png_within(path: &Path, max_side: u32) -> Result<Rgba8, Error> {
-    let opened = file::open(path);
-    let (file, size_bytes) = opened.map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
-    decode(BufReader::new(file), size_bytes, max_side).map_err(|refusal| match refusal {
-        Refusal::TooLarge { width, height } => {
-            Error::TooLarge { path: path.into(), width, height, max_pixels: MAX_PIXELS, max_side }
+    CheckedPng::open(path, max_side)?.into_picture()
+}
+
+/// A PNG that was seen to be whole. The pixels of one that has many for its size are not kept before they are wanted: what
+/// it is taken with may be refused meanwhile.
+pub struct CheckedPng {
+    path: PathBuf,
+    input: BufReader<File>,
+    max_side: u32,
+    size: (u32, u32),
+    picture: Option<Rgba8>,
+}
+
+impl CheckedPng {
+    /// As [`read_png`].
+    ///
+    /// # Errors
+    /// As [`read_png`].
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::open(path, MAX_SIDE)
+    }
+
+    fn open(path: &Path, max_side: u32) -> Result<Self, Error> {
+        let opened = file::open(path);
+        let (file, size_bytes) =
+            opened.map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
+        let mut input = BufReader::new(file);
+        let mut check = || {
+            let (size, is_large) = check(&mut input, size_bytes, max_side)?;
+            Ok((size, if is_large { None } else { Some(pixels(&mut input, max_side)?) }))
+        };
+        let (size, picture) = check().map_err(|refusal: Refusal| refusal.of(path, max_side))?;
+        Ok(CheckedPng { path: path.into(), input, max_side, size, picture })
+    }
+
+    /// Pixels a row, and rows.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// The picture.
+    ///
+    /// # Errors
+    /// As [`read_png`], of a file that was changed meanwhile.
+    pub fn into_picture(self) -> Result<Rgba8, Error> {
+        let CheckedPng { path, mut input, max_side, picture, .. } = self;
+        match picture {
+            Some(picture) => Ok(picture),
+            None => pixels(&mut input, max_side).map_err(|refusal| refusal.of(&path, max_side)),
         }
-        Refusal::Damaged(reason) => Error::Png { path: path.into(), reason: one_line(reason) },
-    })
+    }
 }
 
 /// Why a PNG is not read.
@@ -60,25 +104,38 @@ pub enum Refusal {
     Damaged(DecodingError),
 }
 
+impl Refusal {
+    fn of(self, path: &Path, max_side: u32) -> Error {
+        match self {
+            Refusal::TooLarge { width, height } => {
+                Error::TooLarge { path: path.into(), width, height, max_pixels: MAX_PIXELS, max_side }
+            }
+            Refusal::Damaged(reason) => Error::Png { path: path.into(), reason: one_line(reason) },
+        }
+    }
+}
+
 impl From<DecodingError> for Refusal {
     fn from(reason: DecodingError) -> Self {
         Refusal::Damaged(reason)
     }
 }
 
-/// [`read_png`] from any input of `size_bytes`.
-///
-/// # Errors
-/// The header's size, or what is damaged.
-pub fn decode(mut input: impl BufRead + Seek, size_bytes: u64, max_side: u32) -> Result<Rgba8, Refusal> {
-    let ((width, height), mut reader) = open(&mut input, max_side)?;
+/// The size of a PNG of `size_bytes`, and true for one of many pixels for that, which was seen to be whole.
+fn check(input: &mut (impl BufRead + Seek), size_bytes: u64, max_side: u32) -> Result<((u32, u32), bool), Refusal> {
+    let ((width, height), mut reader) = open(input, max_side)?;
     // Some kilobytes can hold 256 MiB of one colour, and a fault at their end: nothing is kept before all is seen to be
     // whole.
-    if u64::from(width) * u64::from(height) * 4 > SPARE_BYTES + 16 * size_bytes {
+    let is_large = u64::from(width) * u64::from(height) * 4 > SPARE_BYTES + 16 * size_bytes;
+    if is_large {
         while reader.next_interlaced_row()?.is_some() {}
-        drop(reader);
-        reader = open(&mut input, max_side)?.1;
     }
+    Ok(((width, height), is_large))
+}
+
+/// The pixels of a PNG.
+fn pixels(input: &mut (impl BufRead + Seek), max_side: u32) -> Result<Rgba8, Refusal> {
+    let ((width, height), mut reader) = open(input, max_side)?;
     let (color, depth) = reader.output_color_type();
     let mut pixels = Vec::with_capacity(4 * width as usize * height as usize);
     if reader.info().interlaced {
@@ -140,6 +197,23 @@ pub fn write_png(path: &Path, picture: &Rgba8) -> Result<(), Error> {
     }
     let size = (picture.width(), picture.height());
     Ok(file::write_with(path, |file| store(file, picture.pixels(), size, (ColorType::Rgba, BitDepth::Eight), None))?)
+}
+
+/// As [`write_png`], and gives the SHA-256 of the file in lower-case hexadecimal: of what is written here, whatever else is
+/// put in its place meanwhile.
+///
+/// # Errors
+/// As [`write_png`].
+pub fn write_png_hashed(path: &Path, picture: &Rgba8) -> Result<String, Error> {
+    if picture.pixels().is_empty() {
+        return Err(Error::Empty { path: path.into() });
+    }
+    let size = (picture.width(), picture.height());
+    let mut bytes = Vec::new();
+    store(&mut bytes, picture.pixels(), size, (ColorType::Rgba, BitDepth::Eight), None)
+        .map_err(|source| file::OutputError::Write { path: path.into(), source })?;
+    file::write(path, &bytes)?;
+    Ok(content::sha256(&bytes))
 }
 
 /// Writes a raster that is not empty, as [`Format::Png`](super::Format::Png) says, and gives the ramp that it is drawn by.
@@ -206,8 +280,6 @@ fn store(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs::File;
-    use std::io::Cursor;
 
     fn sample() -> Rgba8 {
         let pixels = (0..7 * 5 * 4).map(|i| (i * 37 % 251) as u8).collect();
@@ -246,8 +318,13 @@ mod tests {
         let path = folder.path().join("x.png");
         write_png(&path, &sample()).unwrap();
         assert_eq!(read_png(&path).unwrap(), sample());
+        let plain = std::fs::read(&path).unwrap();
+        let sha256 = write_png_hashed(&path, &sample()).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), plain);
+        assert_eq!(content::file_sha256(&path).unwrap(), sha256);
         let none = Rgba8::new(0, 5, Vec::new()).unwrap();
         assert!(matches!(write_png(&path, &none), Err(Error::Empty { .. })));
+        assert!(matches!(write_png_hashed(&path, &none), Err(Error::Empty { .. })));
         assert_eq!(read_png(&path).unwrap(), sample());
     }
 
@@ -383,11 +460,20 @@ mod tests {
         writer.write_image_data(&vec![0; (side * side / 8) as usize]).unwrap();
         writer.finish().unwrap();
         assert!(bytes.len() < 30_000, "{}", bytes.len());
-        let whole = decode(Cursor::new(&bytes), bytes.len() as u64, MAX_SIDE).unwrap();
-        assert_eq!((whole.width(), whole.pixels().len()), (side, 4 << 26));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("black.png");
+        let open = |bytes: &[u8], max_side: u32| {
+            std::fs::write(&path, bytes).unwrap();
+            CheckedPng::open(&path, max_side)
+        };
+        let whole = open(&bytes, MAX_SIDE).unwrap();
+        assert!(whole.picture.is_none());
+        assert_eq!(whole.size(), (side, side));
+        let pixels = whole.into_picture().unwrap().into_pixels();
+        assert!(pixels.len() == 1 << 26 && pixels.iter().all(|pixel| *pixel == [0, 0, 0, 255]));
         let cut = &bytes[..bytes.len() - 40];
-        assert!(matches!(decode(Cursor::new(cut), cut.len() as u64, MAX_SIDE), Err(Refusal::Damaged(_))));
-        let too_large = decode(Cursor::new(&bytes), bytes.len() as u64, side - 1);
-        assert!(matches!(too_large, Err(Refusal::TooLarge { .. })));
+        assert!(matches!(open(cut, MAX_SIDE), Err(Error::Png { .. })));
+        let too_large = open(&bytes, side - 1);
+        assert!(matches!(too_large, Err(Error::TooLarge { .. })));
     }
 }

@@ -1,45 +1,142 @@
-//! Values of any shape in a record, no more of them than its size lets expect: `[],` is three bytes of JSON and a
-//! hundred in memory.
+//! Lists, texts and values of any shape in a document, no more of them than its size lets expect: `[],` is three bytes of
+//! JSON and a hundred in memory.
 
 use std::cell::Cell;
 use std::fmt;
+use std::marker::PhantomData;
 
+use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
 thread_local! {
-    /// Values that the document that this thread reads may still have.
+    /// Bytes that what is read here may still take, of the document that this thread reads.
     static LEFT: Cell<usize> = const { Cell::new(usize::MAX) };
 }
 
-/// Bytes that a value takes, with its share of a list that grows by copying.
-const VALUE_BYTES: usize = 128;
+/// Bytes of an entry of an object, with its share of the table of hashes.
+const ENTRY_BYTES: usize = size_of::<(u64, String, Value)>() + 16;
 
-/// Begins a document of `size_bytes`: its values may take 16 times its size and 64 MiB.
-pub(super) fn begin(size_bytes: usize) {
-    LEFT.set((16 * size_bytes + (64 << 20)) / 2 / VALUE_BYTES);
+/// Reads a document of `size_bytes`, which may take 64 MiB and 16 times its size: three quarters of that for what is read
+/// here, the others for its text and its numbers.
+pub(super) fn within<T>(size_bytes: usize, read: impl FnOnce() -> T) -> T {
+    LEFT.set(size_bytes.saturating_mul(16).saturating_add(64 << 20) / 4 * 3);
+    let read = read();
+    LEFT.set(usize::MAX);
+    read
+}
+
+fn spend<E: Error>(bytes: usize) -> Result<(), E> {
+    let left = LEFT.get().checked_sub(bytes).ok_or_else(|| E::custom("too many values for a file of its size"))?;
+    LEFT.set(left);
+    Ok(())
+}
+
+/// As [`spend`], for a text with what the allocator adds; an empty one is not allocated.
+fn spend_text<E: Error>(text: &str) -> Result<(), E> {
+    spend(if text.is_empty() { 0 } else { text.len().max(16) + 16 })
 }
 
 /// An object of values of any shape.
 ///
 /// # Errors
 /// Anything but an object, and more values than the document may have.
-pub(super) fn map<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+pub(crate) fn object<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+    // It may stand in a list, which grows by doubling.
+    spend(2 * size_of::<Value>())?;
     match Any.deserialize(deserializer)? {
         Value::Object(map) => Ok(map),
         _ => Err(D::Error::custom("an object is needed")),
     }
 }
 
+/// A list.
+///
+/// # Errors
+/// Anything but a list, and more items than the document may have.
+pub(crate) fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    List(PhantomData).deserialize(deserializer)
+}
+
+/// A list of texts.
+///
+/// # Errors
+/// As [`list`].
+pub(super) fn texts<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    List(Text).deserialize(deserializer)
+}
+
+/// As [`texts`]; absent for `null`.
+///
+/// # Errors
+/// As [`list`].
+pub(super) fn texts_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<String>>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(transparent)]
+    struct Texts(#[serde(deserialize_with = "texts")] Vec<String>);
+    Ok(Option::<Texts>::deserialize(deserializer)?.map(|texts| texts.0))
+}
+
+/// A list of lists of texts.
+///
+/// # Errors
+/// As [`list`].
+pub(crate) fn lists_of_texts<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Vec<String>>, D::Error> {
+    List(List(Text)).deserialize(deserializer)
+}
+
+#[derive(Clone, Copy)]
+struct Text;
+
+impl<'de> DeserializeSeed<'de> for Text {
+    type Value = String;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<String, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        spend_text(&text)?;
+        Ok(text)
+    }
+}
+
+/// A list of what a seed reads.
+#[derive(Clone, Copy)]
+struct List<S>(S);
+
+impl<'de, S: DeserializeSeed<'de> + Copy> DeserializeSeed<'de> for List<S> {
+    type Value = Vec<S::Value>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de, S: DeserializeSeed<'de> + Copy> Visitor<'de> for List<S> {
+    type Value = Vec<S::Value>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a sequence")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Self::Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(item) = items.next_element_seed(self.0)? {
+            if list.len() == list.capacity() {
+                // It takes room for four, and then for twice as many.
+                spend(list.capacity().max(4) * size_of::<S::Value>())?;
+            }
+            list.push(item);
+        }
+        Ok(list)
+    }
+}
+
+#[derive(Clone, Copy)]
 struct Any;
 
 impl<'de> DeserializeSeed<'de> for Any {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
-        let left =
-            LEFT.get().checked_sub(1).ok_or_else(|| D::Error::custom("too many values for a file of its size"))?;
-        LEFT.set(left);
         deserializer.deserialize_any(self)
     }
 }
@@ -72,20 +169,23 @@ impl<'de> Visitor<'de> for Any {
     }
 
     fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        spend_text(value)?;
         Ok(value.into())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
-        let mut list = Vec::new();
-        while let Some(item) = items.next_element_seed(Any)? {
-            list.push(item);
-        }
-        Ok(list.into())
+    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> Result<Value, A::Error> {
+        List(Any).visit_seq(items).map(Value::Array)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
         let mut map = Map::new();
-        while let Some(key) = entries.next_key::<String>()? {
+        while let Some(key) = entries.next_key_seed(Text)? {
+            match map.len() {
+                0 => spend(4 * ENTRY_BYTES)?,
+                // As a list, and a little earlier.
+                count if count >= 4 && count.is_power_of_two() => spend(count * ENTRY_BYTES)?,
+                _ => {}
+            }
             map.insert(key, entries.next_value_seed(Any)?);
         }
         Ok(map.into())

@@ -125,9 +125,9 @@ pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
 /// # Errors
 /// [`ReadError::WrongField`].
 pub fn document<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ReadError> {
-    bounded::begin(text.len());
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| ReadError::WrongField {
+    let read = bounded::within(text.len(), || serde_path_to_error::deserialize(&mut deserializer));
+    read.map_err(|error| ReadError::WrongField {
         path: path.to_owned(),
         field: error.path().to_string(),
         source: error.into_inner(),

@@ -13,7 +13,7 @@
 //! ```
 
 pub mod alternative;
-mod bounded;
+pub(crate) mod bounded;
 pub mod console;
 pub mod csv;
 pub mod environment;

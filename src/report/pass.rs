@@ -122,7 +122,7 @@ pub struct Bytes {
     #[serde(default)]
     pub at_most: Option<BytesAtMost>,
     /// Names of the resources of which no more is known than that they are bound.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "super::bounded::texts")]
     pub uncertain: Vec<String>,
 }
 
@@ -141,8 +141,10 @@ pub struct Profile {
     /// Name of the pass.
     pub pass: String,
     /// Times and code of each compiler's binaries.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub compilers: Vec<CompiledPass>,
     /// Names of the device's own counters (`VK_KHR_performance_query`); absent where it has none.
+    #[serde(default, deserialize_with = "super::bounded::texts_if_any")]
     pub performance_counters: Option<Vec<String>>,
     /// Reason why none of them were read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -177,6 +179,7 @@ pub struct CounterReadings {
     /// In the device's order.
     pub counters: Vec<CounterReading>,
     /// Names of those that would have taken more replays.
+    #[serde(deserialize_with = "super::bounded::texts")]
     pub left_out: Vec<String>,
 }
 

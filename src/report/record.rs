@@ -27,11 +27,13 @@ pub struct Record {
     /// Device, host and build of all runs.
     pub environment: Environment,
     /// The command line, program name first.
+    #[serde(deserialize_with = "super::bounded::texts")]
     pub command: Vec<String>,
     /// The measurement by several processes or machines that the runs are of; absent where one process did it all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub share: Option<Share>,
     /// In the order of measurement.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub runs: Vec<Run>,
 }
 
@@ -65,6 +67,7 @@ pub struct Environment {
     /// Version of the Vulkan loader.
     pub loader: Option<String>,
     /// Every active layer, those from outside the program included.
+    #[serde(deserialize_with = "super::bounded::texts")]
     pub layers: Vec<String>,
     /// The build of the program.
     pub build: Build,
@@ -154,7 +157,7 @@ pub struct Run {
     /// Name of the preset that the setup began with; absent without one.
     pub preset: Option<String>,
     /// Every parameter under its option's name, defaults included.
-    #[serde(deserialize_with = "super::bounded::map")]
+    #[serde(deserialize_with = "super::bounded::object")]
     pub config: Map<String, Value>,
     /// Files that the configuration names.
     #[serde(default)]
@@ -180,6 +183,7 @@ pub struct Run {
     /// repetition after repetition.
     pub frame_ms: Option<Summary>,
     /// The passes in the paper's order.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub passes: Vec<Pass>,
     /// Median over the frames of the passes' GPU times less the GPU time of the same frame as a whole: what the exclusive
     /// timing forbids to overlap.
@@ -200,7 +204,7 @@ pub struct Run {
     /// The device's own limits; absent where they were not measured.
     pub limits: Option<Limits>,
     /// The paper's own figures.
-    #[serde(deserialize_with = "super::bounded::map")]
+    #[serde(deserialize_with = "super::bounded::object")]
     pub results: Map<String, Value>,
     /// Row of the experiment; absent outside experiments.
     pub experiment: Option<ExperimentRow>,
@@ -210,6 +214,7 @@ pub struct Run {
     /// State of the validation layer during the run.
     pub validation: Validation,
     /// Doubts about the run, one line each.
+    #[serde(deserialize_with = "super::bounded::texts")]
     pub warnings: Vec<String>,
     /// Picture written with the run; absent without one.
     pub image: Option<ImageFile>,

@@ -21,6 +21,7 @@ pub struct StressRecord {
     /// Device, host and build of all steps.
     pub environment: Environment,
     /// The command line of the latest call, program name first.
+    #[serde(deserialize_with = "super::bounded::texts")]
     pub command: Vec<String>,
     /// Name of the paper's command.
     pub paper: String,
@@ -38,6 +39,7 @@ pub struct StressRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<[u32; 2]>,
     /// Of every variant, and of every value of the second axis.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub series: Vec<Series>,
 }
 
@@ -85,10 +87,12 @@ pub struct Series {
     /// Value of the second axis; absent without a matrix.
     pub across: Option<u64>,
     /// By ascending value.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub steps: Vec<Step>,
     /// Why there is no further step; absent while it goes on.
     pub stop: Option<Stop>,
     /// Exponents of the frame, of every pass, and of what the steps took, in their amounts.
+    #[serde(deserialize_with = "super::bounded::list")]
     pub costs: Vec<Cost>,
 }
 

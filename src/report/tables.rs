@@ -70,7 +70,7 @@ impl Rows {
 /// Cells of a row.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Row(#[serde(deserialize_with = "bounded::map")] pub Map<String, Value>);
+pub struct Row(#[serde(deserialize_with = "bounded::object")] pub Map<String, Value>);
 
 impl Row {
     /// The cell of a column.

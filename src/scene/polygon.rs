@@ -98,6 +98,7 @@ impl Arities {
 #[derive(Default)]
 struct Cutter {
     earcut: Earcut<f64>,
+    /// The corners of a polygon that is clipped, and its triangles.
     points: Vec<DVec3>,
     triangles: Vec<u32>,
     /// Squares of corners that may still be clipped.
@@ -120,12 +121,12 @@ impl Cutter {
         }
         // Relative to the first corner, so that a polygon far from the origin keeps its precision.
         let origin = positions[polygon[0] as usize].as_dvec3();
-        self.points.clear();
-        self.points.extend(polygon.iter().map(|&index| positions[index as usize].as_dvec3() - origin));
-        let normal = newell_normal(&self.points);
-        let turns_over = |pair: &[DVec3]| pair[0].cross(pair[1]).dot(normal) < 0.0;
+        let point = |index: &u32| positions[*index as usize].as_dvec3() - origin;
+        // A corner is two bytes of a file at least, and its point takes 24: only what is clipped is kept, which is short.
+        let normal = newell_normal(polygon.iter().map(point));
+        let turns_over = |pair: &[u32]| point(&pair[0]).cross(point(&pair[1])).dot(normal) < 0.0;
         self.triangles.clear();
-        if self.points[1..].windows(2).any(turns_over) {
+        if polygon[1..].windows(2).any(turns_over) {
             let squares = (polygon.len() as u64).pow(2);
             self.squares_left = self.squares_left.checked_sub(squares).ok_or_else(|| {
                 format!(
@@ -134,13 +135,15 @@ impl Cutter {
                     polygon.len()
                 )
             })?;
+            self.points.clear();
+            self.points.extend(polygon.iter().map(point));
             self.clip(normal);
         }
         if self.triangles.is_empty() {
-            let last = polygon.len() as u32 - 1;
-            self.triangles.extend((1..last).flat_map(|corner| [0, corner, corner + 1]));
+            indices.extend(polygon[1..].windows(2).flat_map(|pair| [polygon[0], pair[0], pair[1]]));
+        } else {
+            indices.extend(self.triangles.iter().map(|&corner| polygon[corner as usize]));
         }
-        indices.extend(self.triangles.iter().map(|&corner| polygon[corner as usize]));
         Ok(())
     }
 
@@ -159,8 +162,8 @@ impl Cutter {
 
 /// The sum of the cross products of neighbouring corners (Newell's method): normal to the plane
 /// that fits a polygon best, of a length twice the polygon's area. Zero for a polygon without area.
-fn newell_normal(points: &[DVec3]) -> DVec3 {
-    points.iter().zip(points.iter().cycle().skip(1)).map(|(a, b)| a.cross(*b)).sum()
+fn newell_normal(points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    points.clone().zip(points.cycle().skip(1)).map(|(a, b)| a.cross(b)).sum()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::super::failure::Failure;
 use super::super::part::{Part, rows_suffix};
 use crate::file;
-use crate::image::{Rgba8, read_png, write_png};
+use crate::image::{Rgba8, write_png};
 use crate::measure::shard::Shard;
 
 /// Parts of one film, frame by frame, each frame's by their first row.
@@ -42,17 +42,15 @@ impl Film {
     /// # Errors
     /// [`Failure::Input`] for none, for parts of other settings, and for rows that several parts have.
     pub fn of(parts: Vec<(PathBuf, Part)>) -> Result<Self, Failure> {
-        let Some((first_path, first)) = parts.first().cloned() else {
+        let Some((first_path, first)) = parts.first() else {
             return Err(Failure::Input("assemble: no part was found; render --shard leaves them".to_owned()));
         };
+        if let Some((path, part)) = parts.iter().find(|(_, part)| part.identity != first.identity) {
+            let (a, b, what) = (first_path.display(), path.display(), difference(first, part));
+            return Err(Failure::Input(format!("assembling {a} and {b}: their {what} differ; they are of two films")));
+        }
         let mut film = Film { range: first.frames, size: first.size, parts: BTreeMap::new() };
         for (path, part) in parts {
-            if part.identity != first.identity {
-                let (a, b, what) = (first_path.display(), path.display(), difference(&first, &part));
-                return Err(Failure::Input(format!(
-                    "assembling {a} and {b}: their {what} differ; they are of two films"
-                )));
-            }
             film.parts.entry(part.frame).or_default().push((path, part));
         }
         for frame in film.parts.values_mut() {
@@ -102,14 +100,11 @@ impl Film {
         let mut pixels = Vec::new();
         for (path, part) in parts {
             let picture = path.with_file_name(&part.picture);
-            let rows = read_png(&picture)?;
-            if rows.sha256() != part.sha256
-                || [rows.width(), rows.height()] != [self.size[0], part.rows[1] - part.rows[0]]
-            {
+            let Some(rows) = part.read_picture(&picture)? else {
                 let message =
                     format!("assembling {}: it is not the picture that was drawn; render it again", picture.display());
                 return Err(Failure::Input(message));
-            }
+            };
             pixels.extend_from_slice(rows.pixels());
         }
         Ok(Rgba8::new(self.size[0], self.size[1], pixels)?)

@@ -8,6 +8,7 @@ use clap::Args;
 use super::{Ascent, LimitArgs, StressOutput, default_axis, schedule};
 use crate::cli::failure::Failure;
 use crate::cli::options::MachineArgs;
+use crate::cli::pool;
 use crate::cli::watch::interrupted;
 use crate::measure::measure::Schedule;
 use crate::measure::shard::Shard;
@@ -57,6 +58,7 @@ impl Visitor for Count {
 
 /// Grows every paper's first axis, each for its part of the budget that is left.
 pub fn run(arguments: &StressAllArgs) -> Result<(), Failure> {
+    pool::start()?;
     let mut count = Count { shard: arguments.shard.unwrap_or(Shard::ALONE), number: 0, papers: 0 };
     papers::each(&mut count)?;
     papers::each(&mut Papers { arguments, started: Instant::now(), number: 0, left: count.papers })

@@ -34,8 +34,8 @@ pub use within::{Ratio, ratio_within_process};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::report::environment;
 use crate::report::record::Record;
+use crate::report::{bounded, environment};
 use matching::commands;
 
 /// The value of [`Comparison::schema`].
@@ -111,10 +111,10 @@ pub struct Comparison {
     #[serde(default)]
     pub command: Vec<String>,
     /// The command lines that measured A, each once.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded::lists_of_texts")]
     pub a_commands: Vec<Vec<String>>,
     /// The command lines that measured B, each once.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded::lists_of_texts")]
     pub b_commands: Vec<Vec<String>>,
     /// Order of the measurement, which decides the test.
     pub design: Design,
@@ -129,6 +129,7 @@ pub struct Comparison {
     /// Differences between the sides beside their times.
     pub differences: Vec<Difference>,
     /// In the order of A.
+    #[serde(deserialize_with = "bounded::list")]
     pub runs: Vec<RunComparison>,
     /// Runs that the other side does not have.
     pub only_in_a: Vec<String>,
@@ -187,6 +188,7 @@ pub struct RunComparison {
     #[serde(default)]
     pub alternative: String,
     /// Every parameter under its option's name, as A has it.
+    #[serde(deserialize_with = "bounded::object")]
     pub config: Map<String, Value>,
     /// Pixels of the picture.
     pub width: u32,
@@ -199,6 +201,7 @@ pub struct RunComparison {
     /// Time of the whole frame on the host's clock.
     pub frame: Quantity,
     /// In the order of A, then what only B has.
+    #[serde(deserialize_with = "bounded::list")]
     pub passes: Vec<PassComparison>,
     /// Passes of A that B lacks.
     pub missing_passes: Vec<String>,

@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde_json::{Value as Json, json};
 
 use super::drape::{Drape, Draping};
-use crate::image::read_png;
+use crate::image::CheckedPng;
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, parse_finite};
 use crate::scene::{Coordinates, HeightMap, world_file};
@@ -81,7 +81,7 @@ pub(super) struct ReadDrape<'a> {
 
 struct Picture<'a> {
     path: &'a Path,
-    drape: Drape,
+    png: CheckedPng,
     /// The file beside it that says where it lies.
     place: Option<(PathBuf, Coordinates)>,
 }
@@ -98,11 +98,12 @@ impl DrapeSource {
 }
 
 impl ReadDrape<'_> {
-    /// Over maps whose heights are `exaggeration` times the true ones, which lines and colours count.
+    /// Over maps whose heights are `exaggeration` times the true ones, which lines and colours count. After all else that may
+    /// be refused: a small file can hold a large picture.
     ///
     /// # Errors
     /// [`Error::Input`] of a picture that does not lie on the first map.
-    pub(super) fn over(self, maps: &[HeightMap], exaggeration: f32) -> Result<Drape, Error> {
+    pub(super) fn over(self, maps: &[&HeightMap], exaggeration: f32) -> Result<Drape, Error> {
         let draping = match self.source {
             DrapeSource::Picture(_) => {
                 return match (self.picture, maps.first()) {
@@ -114,7 +115,7 @@ impl ReadDrape<'_> {
             DrapeSource::Contours(None) => {
                 let (low_m, high_m) = maps
                     .iter()
-                    .map(HeightMap::range_m)
+                    .map(|map| map.range_m())
                     .fold((f32::INFINITY, f32::NEG_INFINITY), |(low_m, high_m), (lowest_m, highest_m)| {
                         (low_m.min(lowest_m), high_m.max(highest_m))
                     });
@@ -139,16 +140,17 @@ fn suiting_interval_m(range_m: f64) -> f32 {
 
 impl<'a> Picture<'a> {
     fn read(path: &'a Path) -> Result<Self, Error> {
-        let picture = read_png(path)?;
-        let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
-        Ok(Picture { path, drape, place: world_file::beside(path)? })
+        // The file that takes less first.
+        let place = world_file::beside(path)?;
+        Ok(Picture { path, png: CheckedPng::read(path)?, place })
     }
 
     /// The picture where its world file says, or with its corners on the map's.
     fn over(self, map: &HeightMap) -> Result<Drape, Error> {
-        let Picture { path, drape, place } = self;
-        let (width, height) = drape.size();
-        let Some((world_file, coordinates)) = place else { return Ok(drape) };
+        let Picture { path, png, place } = self;
+        let (width, height) = png.size();
+        let drape = || Drape::new(width, height, png.into_picture()?.into_pixels()).map_err(Error::from);
+        let Some((world_file, coordinates)) = place else { return drape() };
         let Some(of_map) = map.coordinates() else {
             let message = format!(
                 "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
@@ -178,7 +180,7 @@ impl<'a> Picture<'a> {
             );
             return Err(Error::Input(message));
         }
-        Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
+        Ok(drape()?.placed(first.as_vec2(), (last - first).as_vec2()))
     }
 }
 

@@ -225,11 +225,11 @@ impl Study for Setup {
             maps = maps.into_iter().map(|map| map.with_voids(Voids::Hole, base_m)).collect::<Result<_, _>>()?;
         }
         let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
-        let drape = drape.map(|drape| drape.over(&maps, self.exaggeration)).transpose()?;
-        let maps = maps.into_iter().zip(self.placements()).map(input).collect();
-        let mut scene = Scene { maps, objects: Vec::new(), drape, tiles: Vec::new() };
-        scene.objects = self.stand(&scene.maps)?;
-        Ok(scene)
+        let maps: Vec<MapInput> = maps.into_iter().zip(self.placements()).map(input).collect();
+        let objects = self.stand(&maps)?;
+        let bare: Vec<&HeightMap> = maps.iter().map(|input| &*input.map).collect();
+        let drape = drape.map(|drape| drape.over(&bare, self.exaggeration)).transpose()?;
+        Ok(Scene { maps, objects, drape, tiles: Vec::new() })
     }
 
     fn reconfigure(&self, _: &Scene, paper: &mut Terrain, changed: &Given) -> Result<bool, Error> {

@@ -31,9 +31,9 @@ pub fn load(setup: &Setup, drape: Option<ReadDrape<'_>>) -> Result<Scene, Error>
         return Err(Error::Input(reason.into()));
     }
     let tiles = setup.maps.iter().map(|source| open(setup, source).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
-    let bare: Vec<HeightMap> = tiles.iter().map(|tiles| HeightMap::clone(tiles.map())).collect();
-    let drape = drape.map(|drape| drape.over(&bare, setup.exaggeration)).transpose()?;
     let objects = setup.objects.iter().map(|object| object.load(setup.crease_deg)).collect::<Result<_, _>>()?;
+    let bare: Vec<&HeightMap> = tiles.iter().map(|tiles| &**tiles.map()).collect();
+    let drape = drape.map(|drape| drape.over(&bare, setup.exaggeration)).transpose()?;
     let input = |(tiles, placement): (&Arc<TileFile>, _)| MapInput { map: tiles.map().clone(), placement };
     let maps = tiles.iter().zip(setup.placements()).map(input).collect();
     Ok(Scene { maps, objects, drape, tiles })

@@ -1,5 +1,6 @@
 use super::gltf_accessor;
 use super::gltf_buffer::Buffers;
+use super::gltf_document::{foreign, read_document};
 use super::stream::{Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::mesh::{Parts, Placement};
@@ -7,7 +8,7 @@ use crate::scene::normals::double_area_vector;
 use ::gltf::Glb;
 use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::mesh::Mode;
-use ::gltf::{Document, Primitive, Semantic, json};
+use ::gltf::{Document, Primitive, Semantic};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -24,8 +25,6 @@ const MAX_PARTS: usize = 1 << 20;
 const GLB_START: usize = 20;
 /// Longest document that is looked at before the file is read, bytes.
 const MOST_PROMISING: u64 = 16 << 20;
-/// Bytes that one object of the document can take in memory.
-const OBJECT_BYTES: usize = 512;
 
 const POSITION_TYPES: [(Dimensions, DataType); 1] = [(Dimensions::Vec3, DataType::F32)];
 const TEXTURE_COORDINATE_TYPES: [(Dimensions, DataType); 3] =
@@ -75,7 +74,6 @@ pub(super) fn promised_triangles(stream: &mut Stream<'_>) -> Result<Option<u64>,
 
 /// Triangles of a document's scene; none where a list of them is not in its buffer, or where there are more than the reader takes.
 fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
-    check_objects(text)?;
     let document = read_document(text)?;
     let is_there = |accessor: &::gltf::Accessor<'_>| {
         accessor.view().is_some_and(|view| {
@@ -106,7 +104,6 @@ fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
 
 fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Fault> {
     let (text, chunk) = open_container(bytes)?;
-    check_objects(&text)?;
     let document = read_document(&text)?;
     let buffers = Buffers::read(&document, chunk, directory)?;
     let meshes = placed_meshes(&document)?;
@@ -170,19 +167,6 @@ fn check_container(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
-/// Refuses a document whose objects would take far more memory than its text.
-fn check_objects(text: &[u8]) -> Result<(), Fault> {
-    /// As many bytes of memory for each of the file, and as many more.
-    const PER_BYTE: usize = 16;
-    const SPARE: usize = 64 << 20;
-    let count = text.iter().filter(|byte| **byte == b'{').count();
-    if count * OBJECT_BYTES > PER_BYTE * text.len() + SPARE {
-        let reason = format!("its {} bytes of JSON hold {count} objects, too many for that size", text.len());
-        return Err(Fault::new(Place::Whole, reason));
-    }
-    Ok(())
-}
-
 /// Vertices and corners of a scene, at most; refuses one that is far larger than the file and its buffers, of so many
 /// bytes together.
 fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<(usize, usize), Fault> {
@@ -207,21 +191,6 @@ fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) 
     Ok((vertices, corners))
 }
 
-/// True for a text that says that it is of version 1.
-fn is_version_1(bytes: &[u8]) -> bool {
-    #[derive(serde::Deserialize)]
-    struct Root {
-        asset: Asset,
-    }
-    #[derive(serde::Deserialize)]
-    struct Asset {
-        /// A text, and in early files a number.
-        version: serde_json::Value,
-    }
-    serde_json::from_slice(bytes)
-        .is_ok_and(|root: Root| root.asset.version.to_string().trim_matches('"').starts_with('1'))
-}
-
 /// The text of a document, and the binary chunk beside it.
 type WithChunk<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
 
@@ -233,30 +202,6 @@ fn open_container(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
     check_container(bytes)?;
     let file = Glb::from_slice(bytes).map_err(foreign)?;
     Ok((file.json, file.bin))
-}
-
-fn foreign(error: ::gltf::Error) -> Fault {
-    Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"))
-}
-
-/// The document of a text, which is no container, even where it begins like one.
-fn read_document(text: &[u8]) -> Result<Document, Fault> {
-    // Not by the library's reader of files, which takes text that begins like a binary file for another.
-    let json = json::deserialize::from_slice::<json::Root>(text).map_err(|error| {
-        let reason = "it is glTF 1.0, whose meshes are written otherwise; convert it to 2.0";
-        if is_version_1(text) { Fault::new(Place::Whole, reason) } else { foreign(error.into()) }
-    })?;
-    // The validation that follows looks at the accessor of the positions before it looks whether
-    // there is one.
-    let accessor_count = json.accessors.len();
-    for (number, mesh) in json.meshes.iter().enumerate() {
-        let mut accessors = mesh.primitives.iter().flat_map(|p| p.attributes.values());
-        if let Some(index) = accessors.find(|index| index.value() >= accessor_count) {
-            let reason = format!("it names accessor {index}, but there are {accessor_count}");
-            return Err(Fault::new(Place::Part(format!("mesh {number}")), reason));
-        }
-    }
-    Document::from_json(json).map_err(foreign)
 }
 
 /// The meshes of the scene's nodes with their transforms to the world.

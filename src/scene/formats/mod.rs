@@ -5,6 +5,7 @@
 mod gltf;
 mod gltf_accessor;
 pub(super) mod gltf_buffer;
+mod gltf_document;
 mod obj;
 mod ply;
 mod stl;

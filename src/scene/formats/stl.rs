@@ -15,6 +15,8 @@ const PREFIX_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
 /// Triangles that are read, and then welded, at once.
 const BLOCK_TRIANGLES: usize = 1 << 17;
+/// Longest line of a text file: one has five words, or a name.
+const MAX_LINE_BYTES: usize = 1 << 10;
 
 /// Reads an STL file, binary or text. Vertices at the same position become one; normals are
 /// computed anew, since an STL file has only those of its facets.
@@ -180,10 +182,16 @@ impl<R: BufRead> Text<R> {
     fn next_line(&mut self) -> io::Result<Option<Vec<u8>>> {
         loop {
             self.raw.clear();
-            if self.rest.read_until(b'\n', &mut self.raw)? == 0 {
+            // One byte more tells a line that is too long, of which `stl_io` would keep and show every word.
+            let count = (&mut self.rest).take(MAX_LINE_BYTES as u64 + 1).read_until(b'\n', &mut self.raw)?;
+            if count == 0 {
                 return Ok(std::mem::take(&mut self.is_complete).then(|| b"endsolid\n".to_vec()));
             }
             self.line += 1;
+            if count > MAX_LINE_BYTES {
+                let reason = format!("it has more than {MAX_LINE_BYTES} bytes; no line of an STL file has as many");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+            }
             let line = self.raw.trim_ascii();
             if starts_with_keyword(line, b"endsolid") {
                 self.is_complete = true;
@@ -283,6 +291,7 @@ mod tests {
             ("-0.0\n", "\n", 11),
             ("endsolid", "", 16),
             ("endsolid", "endfacet", 16),
+            ("vertex 1 0 0", &format!("vertex 1 0 {}", "0 ".repeat(1 << 20)), 5),
         ] {
             let fault = text(&whole.replacen(from, to, 1)).expect_err(to);
             assert_eq!(fault.place, Place::Line(line), "{to}: {fault}");

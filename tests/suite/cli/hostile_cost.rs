@@ -109,6 +109,19 @@ fn small_files_of_many_triangles() {
     refused(mesh, "buffers.gltf", gltf(1, 1, 500).as_bytes(), &["positive area"]);
     let extras = format!("{{\"extras\":[{}0]}}", "0,".repeat(20_000_000));
     refused(mesh, "extras.gltf", extras.as_bytes(), &["no valid glTF"]);
+    let trees = |begin: &str, item: &str, end: &str| format!("{begin}{}0{end}", item.repeat(5_000_000)).into_bytes();
+    for item in ["[],", "[0],", "0,"] {
+        refused(mesh, "version.gltf", &trees("{\"asset\":{\"version\":[", item, "]}}"), &["expected"]);
+        let begin = "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"min\":[";
+        refused(mesh, "least.gltf", &trees(begin, item, "]}]}"), &["least.gltf", "expected"]);
+        for list in ["accessors", "materials", "samplers", "meshes", "textures", "nodes"] {
+            refused(mesh, "list.gltf", &trees(&format!("{{\"{list}\":["), item, "]}"), &["no valid glTF"]);
+        }
+    }
+    let bounds = format!("\"min\":[{}0],\"max\":[{0}0]", "0,".repeat(8));
+    let accessor = format!("{{\"count\":1,\"componentType\":5126,\"type\":\"MAT3\",{bounds}}},");
+    let accessors = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"accessors\":[{}0]}}", accessor.repeat(200_000));
+    refused(mesh, "bounds.gltf", accessors.as_bytes(), &["bounds.gltf"]);
 }
 
 #[test]
@@ -125,6 +138,13 @@ fn long_polygons() {
     refused(mesh, "points.obj", ring.as_bytes(), &["positive area"]);
     let long = "f".to_owned() + &" 1".repeat(4_000_000);
     refused(mesh, "long.obj", format!("v 0 0 0\nv 1 0 0\n{long}\n").as_bytes(), &["positive area"]);
+    // More than a power of two, by which lists grow.
+    for (corner, count) in [(" 1", 4_200_000), (" 1//1", 2_100_000), (" 1/1/1", 2_100_000)] {
+        let long = format!("v 0 0 0\nv 1 0 0\nvn 1 0 0\nvt 0 0\nf{}\n", corner.repeat(count));
+        refused(mesh, "longer.obj", long.as_bytes(), &["positive area"]);
+    }
+    let distinct: String = (1..1_500_000).map(|i| format!(" {i}")).collect();
+    refused(mesh, "names.obj", format!("v 0 0 0\nf 1{distinct}\n").as_bytes(), &["index 1499999 is out of range"]);
 }
 
 #[test]

@@ -3,19 +3,19 @@
 use super::hostile_cost::{black_png, cut_png, mesh, refused, refused_of};
 use super::program::{Program, burning, fumarole, terrain};
 
-const STRESS: &str = include_str!("../../../fuzz/corpus/stress/whole");
-const VERDICTS: &str = include_str!("../../../fuzz/corpus/verdicts/whole");
-const TABLES: &str = include_str!("../../../fuzz/corpus/tables/whole");
-const PART: &str = include_str!("../../../fuzz/corpus/part/whole");
+pub(super) const STRESS: &str = include_str!("../../../fuzz/corpus/stress/whole");
+pub(super) const VERDICTS: &str = include_str!("../../../fuzz/corpus/verdicts/whole");
+pub(super) const TABLES: &str = include_str!("../../../fuzz/corpus/tables/whole");
+pub(super) const PART: &str = include_str!("../../../fuzz/corpus/part/whole");
 
 /// A document with `more` in place of its first `marker`.
-fn with(document: &str, marker: &str, more: &str) -> Vec<u8> {
+pub(super) fn with(document: &str, marker: &str, more: &str) -> Vec<u8> {
     assert!(document.contains(marker), "{marker}");
     document.replacen(marker, more, 1).into_bytes()
 }
 
 /// As [`with`], with so many of `item`, and a number, which none of them is, at the begin of a list.
-fn with_items(document: &str, list: &str, item: &str, count: usize) -> Vec<u8> {
+pub(super) fn with_items(document: &str, list: &str, item: &str, count: usize) -> Vec<u8> {
     with(document, list, &format!("{list}{}0,", format!("{item},").repeat(count)))
 }
 
@@ -30,7 +30,10 @@ fn stl_files() {
     refused(mesh, "cut.stl", format!("solid\n{}", facet.repeat(200_000)).as_bytes(), &["line 1400001: EOF"]);
     refused(mesh, "solids.stl", "solid\nendsolid\n".repeat(2_000_000).as_bytes(), &["0 vertices"]);
     refused(mesh, "blank.stl", format!("solid\n{}", "\n".repeat(20_000_000)).as_bytes(), &["line 20000001: EOF"]);
-    refused(mesh, "word.stl", format!("solid\n{}", "a".repeat(20_000_000)).as_bytes(), &["line 2", "aaa..."]);
+    refused(mesh, "word.stl", format!("solid\n{}", "a".repeat(20_000_000)).as_bytes(), &["line 2", "1024 bytes"]);
+    for line in ["", "facet ", "facet normal 0 0 0\nouter loop\nvertex "] {
+        refused(mesh, "words.stl", format!("solid\n{line}{}", "0 ".repeat(8_400_000)).as_bytes(), &["words.stl: line"]);
+    }
 }
 
 /// A binary file of glTF with chunks of a kind, bytes, and a length that is claimed of them.
@@ -70,7 +73,7 @@ fn glb_files() {
     refused(mesh, "buffer.glb", &file(&scene(3, 4_000_000_000), 5_000_000), &["buffer 0", "claims 4000000000 bytes"]);
     refused(mesh, "list.glb", &file(&scene(1 << 31, 5_000_000), 5_000_000), &["simplify it"]);
     refused(mesh, "list.glb", &file(&scene(1_000_000, 5_000_000), 5_000_000), &["1000000 elements", "do not fit"]);
-    let names = with_items("{\"extensionsUsed\":[]}", "[", "\"\"", 6_000_000);
+    let names = with_items("{\"extensionsUsed\":[0]}", "[", "\"\"", 6_000_000);
     refused(mesh, "names.glb", &glb(&[(json, &names, names.len() as u32)]), &["expected a string"]);
 }
 
@@ -84,6 +87,12 @@ fn tiles_and_rasters() {
     let apart = |other: &'static str| [("maps/N00E000.hgt", &tile[..]), (other, &tile)];
     refused_of(map, &apart("maps/S80W170.hgt"), &["205201 x 97201", "65536"]);
     refused_of(map, &apart("maps/N40E040.hgt"), &["lie so far apart"]);
+    let names: Vec<String> = (0..62_000)
+        .map(|i| {
+            format!("maps/{}{:02}{}{:03}.hgt", ["N", "S"][i % 2], 1 + i / 4 % 89, ["E", "W"][i / 2 % 2], 1 + i / 356)
+        })
+        .collect();
+    refused_of(map, &names.iter().map(|name| (&name[..], &b""[..])).collect::<Vec<_>>(), &["0 bytes"]);
 
     let raster = |header: &str, count: usize, parts: &[&str]| {
         refused_of(map, &[("a.bil", &vec![0; count]), ("a.hdr", header.as_bytes())], parts);
@@ -115,6 +124,12 @@ fn world_files() {
     beside(&b" ".repeat(20_000_000), "0 numbers");
     beside(&b"0 ".repeat(10_000_000), "more than six");
     beside(&b"\xff".repeat(20_000_000), "no finite number");
+    // A small file of many pixels is not kept before all beside it is seen to be good.
+    let large = black_png(8_192);
+    let drape = || terrain("render --drape");
+    refused_of(drape, &[("a.png", &large), ("a.pgw", b"x")], &["world file"]);
+    let placed = || terrain("render --map gone.asc --drape");
+    refused_of(placed, &[("a.png", &large), ("a.pgw", b"1 0 0 -1 0 0")], &["gone.asc"]);
 }
 
 #[test]
@@ -122,14 +137,14 @@ fn materials() {
     let materials = || burning("render --mesh box --materials");
     let toml = |text: &str, parts: &[&str]| refused(materials, "a.toml", text.as_bytes(), parts);
     let wood = "[[material]]\nkind = \"wood\"\n";
-    toml(&"x".repeat(30_000_000), &["30000000 bytes", "limit of 1048576"]);
-    toml(&wood.repeat(37_000), &["37000 materials", "256"]);
-    toml(&format!("{wood}parts = [{}]", "\"\",".repeat(340_000)), &["line 3", "names no parts"]);
-    toml(&format!("x = [{}]", "[],".repeat(340_000)), &["line 1", "unknown field \"x\""]);
-    toml(&format!("x = {}", "[".repeat(1_000_000)), &["line 1", "recurse"]);
-    toml(&format!("a{} = 0", ".a".repeat(520_000)), &["recursion"]);
-    toml(&"[[a]]\n".repeat(170_000), &["line 1", "unknown field \"a\""]);
-    toml(&(0..110_000).map(|i| format!("{i:x}=0\n")).collect::<String>(), &["unknown field \"0\""]);
+    toml(&"x".repeat(30_000_000), &["30000000 bytes", "limit of 98304"]);
+    toml(&wood.repeat(3_500), &["3500 materials", "256"]);
+    toml(&format!("{wood}parts = [{}]", "\"\",".repeat(32_000)), &["line 3", "names no parts"]);
+    toml(&format!("x = [{}]", "[],".repeat(32_000)), &["line 1", "unknown field \"x\""]);
+    toml(&format!("x = {}", "[".repeat(98_000)), &["line 1", "recurse"]);
+    toml(&format!("a{} = 0", ".a".repeat(49_000)), &["recursion"]);
+    toml(&"[[a]]\n".repeat(16_000), &["line 1", "unknown field \"a\""]);
+    toml(&(0..12_000).map(|i| format!("{i:x}=0\n")).collect::<String>(), &["unknown field \"0\""]);
 }
 
 #[test]

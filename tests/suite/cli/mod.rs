@@ -22,6 +22,7 @@ mod gas_volumes;
 mod help;
 mod hostile;
 mod hostile_cost;
+mod hostile_documents;
 mod hostile_readers;
 mod interruption;
 mod kubernetes;

@@ -1,5 +1,6 @@
 //! The file of `--materials`: a table `[[material]]` for each, in TOML.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
@@ -13,8 +14,8 @@ use crate::measure::Error;
 use crate::scene::Mesh;
 use crate::{content, file};
 
-/// Largest file that is read, bytes.
-const MOST_BYTES: u64 = 1 << 20;
+/// Largest file that is read, bytes: what is parsed of `a.a.a.a = 0` takes 600 times as much.
+const MOST_BYTES: u64 = 96 << 10;
 /// Most materials of one.
 const MOST_MATERIALS: usize = 256;
 
@@ -61,15 +62,19 @@ pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
         let Some(texture) = &document.texture else {
             return assigned(&document.material, mesh, &mesh.tags.colors, text.as_bytes());
         };
+        // Before the picture takes its memory.
+        let rules = Rules::of(&document.material, mesh, true)?;
         let wrong = |reason: String| (Some(texture.span().start), reason);
         let folder = path.parent().unwrap_or(Path::new(""));
         let picture = file::below(folder, Path::new(texture.get_ref())).map_err(|error| {
             let shown: String = texture.get_ref().chars().take(40).collect();
             wrong(format!("texture {shown:?}: {error}"))
         })?;
+        if mesh.texture_coordinates.is_empty() {
+            return Err(wrong(format!("the mesh {} has no texture coordinates; name its parts", mesh.name)));
+        }
         let picture = read_png_within(&picture, LARGEST_SIDE).map_err(|error| wrong(error.to_string()))?;
-        let colors = colors_of(&picture, mesh).map_err(wrong)?;
-        assigned(&document.material, mesh, &colors, &[text.as_bytes(), picture.pixels()].concat())
+        Ok(rules.assign(mesh, &colors_of(&picture, mesh), &[text.as_bytes(), picture.pixels()].concat()))
     });
     parsed.map_err(|(at, reason)| match at {
         None => cannot(reason),
@@ -81,10 +86,7 @@ pub fn load(path: &Path, mesh: &Mesh) -> Result<Materials, Error> {
 }
 
 /// The colour of a picture's texel at each vertex, as the file has it, 0 to 1; the picture repeats.
-fn colors_of(picture: &Rgba8, mesh: &Mesh) -> Result<Vec<Vec3>, String> {
-    if mesh.texture_coordinates.is_empty() {
-        return Err(format!("the mesh {} has no texture coordinates; name its parts", mesh.name));
-    }
+fn colors_of(picture: &Rgba8, mesh: &Mesh) -> Vec<Vec3> {
     let at = |share: f32, count: u32| ((share - share.floor()) * count as f32) as usize % count as usize;
     let color = |coordinates: &Vec2| {
         // (0, 0) is the lower left corner, the top row comes first.
@@ -92,7 +94,7 @@ fn colors_of(picture: &Rgba8, mesh: &Mesh) -> Result<Vec<Vec3>, String> {
         let first = 4 * (row * picture.width() as usize + column);
         Vec3::from([0, 1, 2].map(|channel| f32::from(picture.pixels()[first + channel]) / 255.0))
     };
-    Ok(mesh.texture_coordinates.iter().map(color).collect())
+    mesh.texture_coordinates.iter().map(color).collect()
 }
 
 fn parse(text: &str) -> Result<Document, Wrong> {
@@ -163,50 +165,83 @@ fn fractions(name: &str, given: &Spanned<[f32; 3]>) -> Result<Vec3, Wrong> {
 
 /// The materials of the vertices, whose colours are `colors`; `content` is all that was read.
 fn assigned(entries: &[Entry], mesh: &Mesh, colors_of_vertices: &[Vec3], content: &[u8]) -> Result<Materials, Wrong> {
-    let tags = &mesh.tags;
-    let mut of_part: Vec<Option<u32>> = vec![None; tags.names.len()];
-    let mut rest: Option<u32> = None;
-    let mut colors: Vec<(Vec3, u32)> = Vec::new();
-    let mut substances = Vec::new();
-    for (number, entry) in (1..).zip(entries) {
-        substances.push(entry.substance()?);
-        for name in &entry.parts {
-            let named = |names: &Vec<String>| names.contains(name.get_ref());
-            let mut found = false;
-            for (_, of_part) in tags.names.iter().zip(&mut of_part).filter(|(names, _)| named(names)) {
-                found = true;
-                of_part.get_or_insert(number);
-            }
-            if !found {
-                return Err((Some(name.span().start), unknown(name.get_ref(), mesh)));
+    let rules = Rules::of(entries, mesh, !colors_of_vertices.is_empty())?;
+    Ok(rules.assign(mesh, colors_of_vertices, content))
+}
+
+/// The materials, and which vertices they take.
+struct Rules {
+    substances: Vec<Substance>,
+    /// Of each part of the mesh.
+    of_part: Vec<Option<u32>>,
+    colors: Vec<(Vec3, u32)>,
+    /// Of all that no other takes.
+    rest: Option<u32>,
+}
+
+impl Rules {
+    /// Those of a file, for a mesh whose vertices have colours or not.
+    fn of(entries: &[Entry], mesh: &Mesh, has_colors: bool) -> Result<Self, Wrong> {
+        let tags = &mesh.tags;
+        // Of each name the first material that asks for it, and true where a part has it.
+        let mut asked: HashMap<&str, (u32, bool)> = HashMap::new();
+        for (number, entry) in (1..).zip(entries) {
+            for name in &entry.parts {
+                asked.entry(name.get_ref()).or_insert((number, false));
             }
         }
-        if let Some(color) = &entry.color {
-            if colors_of_vertices.is_empty() {
-                let reason = format!("the mesh {} has no colours of vertices; name its parts or a texture", mesh.name);
-                return Err((Some(color.span().start), reason));
+        let mut asks_for = |name: &String| {
+            let (number, is_found) = asked.get_mut(name.as_str())?;
+            *is_found = true;
+            Some(*number)
+        };
+        let of_part: Vec<Option<u32>> =
+            tags.names.iter().map(|names| names.iter().filter_map(&mut asks_for).min()).collect();
+        let mut rest: Option<u32> = None;
+        let mut colors: Vec<(Vec3, u32)> = Vec::new();
+        let mut substances = Vec::new();
+        for (number, entry) in (1..).zip(entries) {
+            substances.push(entry.substance()?);
+            for name in &entry.parts {
+                if asked.get(name.get_ref().as_str()).is_none_or(|(_, is_found)| !is_found) {
+                    return Err((Some(name.span().start), unknown(name.get_ref(), mesh)));
+                }
             }
-            colors.push((fractions("color", color)?, number));
-        }
-        if entry.parts.is_empty() && entry.color.is_none() {
-            if rest.is_some() {
-                let reason = "a second material without parts and color; one takes all that no other names".to_owned();
-                return Err((Some(entry.kind.span().start), reason));
+            if let Some(color) = &entry.color {
+                if !has_colors {
+                    let reason =
+                        format!("the mesh {} has no colours of vertices; name its parts or a texture", mesh.name);
+                    return Err((Some(color.span().start), reason));
+                }
+                colors.push((fractions("color", color)?, number));
             }
-            rest = Some(number);
+            if entry.parts.is_empty() && entry.color.is_none() {
+                if rest.is_some() {
+                    let reason =
+                        "a second material without parts and color; one takes all that no other names".to_owned();
+                    return Err((Some(entry.kind.span().start), reason));
+                }
+                rest = Some(number);
+            }
         }
+        Ok(Rules { substances, of_part, colors, rest })
     }
-    let nearest = |color: Vec3| {
-        let distance = |of: &&(Vec3, u32)| of.0.distance_squared(color);
-        colors.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(_, number)| *number)
-    };
-    let of_vertex = |vertex: usize| {
-        let by_part = || of_part[*tags.part_of.get(vertex)? as usize];
-        let by_color = || nearest(*colors_of_vertices.get(vertex)?);
-        by_part().or_else(by_color).or(rest).unwrap_or(0)
-    };
-    let of_vertex = (0..mesh.positions.len()).map(of_vertex).collect();
-    Ok(Materials { substances, of_vertex, sha256: content::sha256(content) })
+
+    fn assign(self, mesh: &Mesh, colors_of_vertices: &[Vec3], content: &[u8]) -> Materials {
+        let Rules { substances, of_part, colors, rest } = self;
+        let tags = &mesh.tags;
+        let nearest = |color: Vec3| {
+            let distance = |of: &&(Vec3, u32)| of.0.distance_squared(color);
+            colors.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(_, number)| *number)
+        };
+        let of_vertex = |vertex: usize| {
+            let by_part = || of_part[*tags.part_of.get(vertex)? as usize];
+            let by_color = || nearest(*colors_of_vertices.get(vertex)?);
+            by_part().or_else(by_color).or(rest).unwrap_or(0)
+        };
+        let of_vertex = (0..mesh.positions.len()).map(of_vertex).collect();
+        Materials { substances, of_vertex, sha256: content::sha256(content) }
+    }
 }
 
 /// Says which names there are, or the first of them.

@@ -13,33 +13,44 @@ use crate::measure::parameter::Value;
 /// The longest file, bytes: some ten million bodies.
 const MOST_BYTES: u64 = 1 << 30;
 /// Bytes of the pieces, or a little more, that are read at once.
-const PIECE_BYTES: usize = 1 << 18;
+const PIECE_BYTES: usize = 1 << 16;
+/// Bytes of the shortest body, `1,2,3,4`, with the end of its line.
+const LEAST_BYTES: usize = 8;
 
 /// A line that is no body: its number in its piece, from 1 on, and the reason.
 type Refused = (usize, String);
 
-/// The bodies of a CSV file: six numbers a line for a segment, four for a sphere, as the options have them. Empty lines, those
+/// Adds the bodies of a CSV file: six numbers a line for a segment, four for a sphere, as the options have them. Empty lines, those
 /// that begin with `#`, and a heading in the first are passed over.
 ///
 /// # Errors
 /// [`Error::Input`] for a file that cannot be read and for the first line that is no body, with its number.
-pub fn read(path: &Path) -> Result<Vec<Body>, Error> {
+pub fn read(path: &Path, all: &mut Vec<Body>) -> Result<(), Error> {
     let failed = |reason: String| Error::Input(format!("`bodies` {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
     let pieces = pieces(&text);
-    let read: Vec<Result<Vec<Body>, Refused>> =
-        pieces.par_iter().enumerate().map(|(number, piece)| bodies(piece, number == 0)).collect();
-    let mut all = Vec::with_capacity(read.iter().flatten().map(Vec::len).sum());
-    for (number, bodies) in read.into_iter().enumerate() {
-        all.append(&mut bodies.map_err(|(line, reason)| {
-            let before: usize = pieces[..number].iter().map(|piece| piece.lines().count()).sum();
-            failed(format!("line {}: {reason}", before + line))
-        })?);
+    let ends: usize = pieces.par_iter().map(|piece| piece.bytes().filter(|&byte| byte == b'\n').count()).sum();
+    // A body takes seven times the bytes of the shortest line: room for no more than there can be, and a few pieces at once
+    // beside it.
+    all.reserve_exact((ends + 1).min(text.len().div_ceil(LEAST_BYTES)));
+    let before = all.len();
+    let at_once = 4 * rayon::current_num_threads();
+    for (wave, pieces_of_wave) in pieces.chunks(at_once).enumerate() {
+        let first = wave * at_once;
+        let numbered = pieces_of_wave.par_iter().enumerate();
+        let read: Vec<Result<Vec<Body>, Refused>> =
+            numbered.map(|(number, piece)| bodies(piece, first + number == 0)).collect();
+        for (number, bodies) in (first..).zip(read) {
+            all.append(&mut bodies.map_err(|(line, reason)| {
+                let before: usize = pieces[..number].iter().map(|piece| piece.lines().count()).sum();
+                failed(format!("line {}: {reason}", before + line))
+            })?);
+        }
     }
-    if all.is_empty() {
+    if all.len() == before {
         return Err(failed("it has no body; give X,Y,Z,X,Y,Z or X,Y,Z,R a line".into()));
     }
-    Ok(all)
+    Ok(())
 }
 
 /// A text in pieces of whole lines.
@@ -104,8 +115,11 @@ mod tests {
         let path = folder.path().join("bodies.csv");
         std::fs::write(&path, lines.join("\r\n")).expect("room for the file");
         assert!(pieces(&lines.join("\n")).len() > 2);
-        let all = read(&path).expect("bodies");
-        assert_eq!(all.len(), count);
+        let first = Body::from(&[9.0, 2.0, 3.0, 4.0]);
+        let mut all = vec![first];
+        read(&path, &mut all).expect("bodies");
+        assert_eq!((all.len(), all.capacity()), (1 + count, 1 + count));
+        assert_eq!(all.remove(0), first);
         for (x, body) in (1..).zip(all) {
             assert_eq!(body, Body::from(&[f64::from(x), 2.0, 3.0, 4.0]));
         }
@@ -113,7 +127,7 @@ mod tests {
             let mut lines = lines.clone();
             lines[wrong - 1] = "1,2,x,4".to_owned();
             std::fs::write(&path, lines.join("\n")).expect("room for the file");
-            let reason = read(&path).expect_err("no body").to_string();
+            let reason = read(&path, &mut vec![]).expect_err("no body").to_string();
             assert!(reason.contains(&format!("line {wrong}: ")), "{reason}");
         }
     }

@@ -276,7 +276,7 @@ fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     let mut bodies: Vec<Body> = segments.iter().map(Body::from).chain(spheres.iter().map(Body::from)).collect();
     let started = Instant::now();
     if let Some(path) = file_of_bodies {
-        bodies.extend(bodies::read(path)?);
+        bodies::read(path, &mut bodies)?;
     }
     let read_s = started.elapsed().as_secs_f64();
     if bodies.is_empty() {

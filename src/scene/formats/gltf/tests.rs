@@ -254,6 +254,34 @@ fn a_document_of_nothing_but_objects_is_refused() {
 }
 
 #[test]
+fn lists_in_place_of_numbers_and_objects_are_refused() {
+    let refused = |fields: &str| {
+        let json = format!(r#"{{"asset":{{"version":"2.0"}},{fields}}}"#);
+        parse(json.as_bytes(), Path::new("")).unwrap_err().to_string()
+    };
+    let accessor = |bounds: &str| {
+        format!(r#""accessors":[{{"componentType":5126,"count":1,"type":"VEC3","bufferView":0,{bounds}}}]"#)
+    };
+    for (fields, expected) in [
+        (accessor(r#""min":[0,[1],2]"#), "expected f64"),
+        (accessor(&format!(r#""max":[{}0]"#, "0,".repeat(16))), "expected at most 16 numbers"),
+        (accessor(r#""max":{"x":1}"#), "expected a sequence"),
+        (r#""materials":[{},[]]"#.to_owned(), "expected an object"),
+        (r#""samplers":[[]]"#.to_owned(), "expected an object"),
+        // What some write for a number that is not finite.
+        (format!(r#"{},"bufferViews":[]"#, accessor(r#""min":[null,1.5,-2],"max":null"#)), "accessors[0].bufferView"),
+        (r#""materials":[{"pbrMetallicRoughness":{}}],"samplers":[{}]"#.to_owned(), "no scene"),
+    ] {
+        let fault = refused(&fields);
+        assert!(fault.contains(expected), "{fields}: {fault}");
+    }
+    // Bounds take memory as objects do.
+    let bounds = format!(r#"{{"min":[{0}0],"max":[{0}0]}},"#, "0,".repeat(8));
+    let many = refused(&format!(r#""accessors":[{}{{}}]"#, bounds.repeat(40_000)));
+    assert!(many.contains("40003 objects"), "{many}");
+}
+
+#[test]
 fn buffers_of_one_file_share_it() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.bin"), square_bytes()).unwrap();

@@ -9,6 +9,7 @@ use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
 use crate::scene::{Error, HeightMap, file};
 use glam::DVec2;
+use std::collections::HashMap;
 use std::fs;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -105,9 +106,9 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, Error> {
         entries.push(Entry { path, name, size_bytes, south_deg, west_deg });
     }
     entries.sort_by(|a, b| a.name.cmp(&b.name));
-    let place = |entry: &Entry| (entry.south_deg, entry.west_deg);
-    for (index, entry) in entries.iter().enumerate() {
-        if let Some(other) = entries[..index].iter().find(|other| place(other) == place(entry)) {
+    let mut placed = HashMap::new();
+    for entry in &entries {
+        if let Some(other) = placed.insert((entry.south_deg, entry.west_deg), entry) {
             let reason = format!("it lies where {} does; a folder has one tile of each degree", other.name);
             return Err(malformed(&entry.path, Fault::new(Place::Whole, reason)));
         }
