@@ -13,19 +13,35 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::digest(bytes).as_ref())
 }
 
+/// SHA-256 of bytes that come one after another.
+#[derive(Default)]
+pub struct Hasher(Sha256);
+
+impl Hasher {
+    /// Takes the next bytes.
+    pub fn add(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// As [`sha256`], of all bytes so far.
+    pub fn sha256(self) -> String {
+        hexadecimal(self.0.finalize().as_ref())
+    }
+}
+
 /// SHA-256 of a regular file in lower-case hexadecimal.
 ///
 /// # Errors
 /// As [`file::open`]; the file cannot be read.
 pub fn file_sha256(path: &Path) -> io::Result<String> {
-    let mut hasher = Sha256::new();
+    let mut hasher = Hasher::default();
     let mut input = BufReader::with_capacity(1 << 20, file::open(path)?.0);
     loop {
         let block = input.fill_buf()?;
         if block.is_empty() {
-            return Ok(hexadecimal(hasher.finalize().as_ref()));
+            return Ok(hasher.sha256());
         }
-        hasher.update(block);
+        hasher.add(block);
         let length = block.len();
         input.consume(length);
     }

@@ -261,7 +261,7 @@ fn stress(data: &[u8]) {
     let other: StressRecord = document(OTHER, report::json::document).expect("it is a record of stress");
     let own: Option<StressRecord> = document(data, report::json::document);
     for template in own.iter().chain([&other]) {
-        match file.known(template, false) {
+        match file.left(false).and_then(|left| file.known(left, template)) {
             Ok(series) => assert!(series.len() < data.len()),
             Err(error) => assert!(!error.to_string().is_empty()),
         }

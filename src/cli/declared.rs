@@ -16,6 +16,7 @@ use super::{bench, help, loading, passes, pool, render, spelling};
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
+use crate::measure::shared_sweep::Assembled;
 use crate::measure::study::{Preset, Study, check_one};
 use crate::measure::{Error, Variant};
 
@@ -389,7 +390,7 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
         measure: common.measure.options(),
         destinations: common.output.destinations(),
         shard: matches.get_one("shard").copied(),
-        assembled: matches.get_one("assembled").cloned(),
+        assembled: matches.get_one::<PathBuf>("assembled").map(|path| Assembled::read(path)).transpose()?,
         console: &Terminal { is_quiet: common.output.quiet },
         doubts: Doubts::default(),
     };

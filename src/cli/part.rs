@@ -148,19 +148,17 @@ impl Part {
 
     /// True when the file is the picture that was drawn.
     pub fn has_picture(&self, picture: &Path) -> bool {
-        matches!(self.read_picture(picture), Ok(Some(_)))
+        matches!(self.checked_picture(picture), Ok(Some(_)))
     }
 
     /// The picture that was drawn; `None` where the file is another one.
     ///
     /// # Errors
     /// As [`read_png`](image::read_png).
-    pub fn read_picture(&self, picture: &Path) -> Result<Option<Rgba8>, image::Error> {
-        let found = CheckedPng::read(picture)?;
-        if found.size() != (self.size[0], self.rows[1] - self.rows[0]) {
-            return Ok(None);
-        }
-        Ok(Some(found.into_picture()?).filter(|picture| picture.sha256() == self.sha256))
+    pub fn checked_picture(&self, picture: &Path) -> Result<Option<CheckedPng>, image::Error> {
+        let (found, sha256) = CheckedPng::read_hashed(picture)?;
+        let is_same = found.size() == (self.size[0], self.rows[1] - self.rows[0]) && sha256 == self.sha256;
+        Ok(is_same.then_some(found))
     }
 
     /// Writes what stands beside the picture, which was written before it.

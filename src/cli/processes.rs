@@ -137,12 +137,13 @@ pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<End
 pub fn finish_within(command: &mut Command, interrupted: &AtomicBool, end: Option<Instant>) -> io::Result<Ended> {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
     let pipe = child.stderr.take();
-    let errors = thread::spawn(move || {
+    let errors = thread::Builder::new().spawn(move || {
         let mut bytes = Vec::new();
         // What cannot be read is not said.
         let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
         String::from_utf8_lossy(&bytes).into_owned()
     });
+    let errors = errors.or_else(|error| child.kill().and_then(|()| child.wait()).and(Err(error)))?;
     let (mut deadline, mut is_told, mut is_late) = (None, false, false);
     let status = loop {
         if let Some(status) = child.try_wait()? {

@@ -11,7 +11,8 @@ use super::error::one_line;
 use super::raster::{Raster, Samples};
 use super::view::{Ramp, ramped};
 use super::{Error, Rgba8, view};
-use crate::{content, file};
+use crate::content::{self, Hasher};
+use crate::file;
 
 /// The largest 2-D image that desktop GPUs commonly take, pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -38,7 +39,7 @@ pub fn read_png(path: &Path) -> Result<Rgba8, Error> {
 /// # Errors
 /// As [`read_png`].
 pub fn read_png_within(path: &Path, max_side: u32) -> Result<Rgba8, Error> {
-    CheckedPng::open(path, max_side)?.into_picture()
+    CheckedPng::open(path, max_side, None)?.into_picture()
 }
 
 /// A PNG that was seen to be whole. The pixels of one that has many for its size are not kept before they are wanted: what
@@ -57,16 +58,28 @@ impl CheckedPng {
     /// # Errors
     /// As [`read_png`].
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::open(path, MAX_SIDE)
+        Self::open(path, MAX_SIDE, None)
     }
 
-    fn open(path: &Path, max_side: u32) -> Result<Self, Error> {
+    /// As [`read`](Self::read), with [`Rgba8::sha256`] of the picture; one that is interlaced and has many pixels has none.
+    ///
+    /// # Errors
+    /// As [`read_png`].
+    pub fn read_hashed(path: &Path) -> Result<(Self, String), Error> {
+        let mut hasher = Hasher::default();
+        let found = Self::open(path, MAX_SIDE, Some(&mut hasher))?;
+        let sha256 = found.picture.as_ref().map_or_else(|| hasher.sha256(), Rgba8::sha256);
+        Ok((found, sha256))
+    }
+
+    /// A picture that is not kept is hashed meanwhile, unless it is interlaced.
+    fn open(path: &Path, max_side: u32, hasher: Option<&mut Hasher>) -> Result<Self, Error> {
         let opened = file::open(path);
         let (file, size_bytes) =
             opened.map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
         let mut input = BufReader::new(file);
-        let mut check = || {
-            let (size, is_large) = check(&mut input, size_bytes, max_side)?;
+        let check = || {
+            let (size, is_large) = check(&mut input, size_bytes, max_side, hasher)?;
             Ok((size, if is_large { None } else { Some(pixels(&mut input, max_side)?) }))
         };
         let (size, picture) = check().map_err(|refusal: Refusal| refusal.of(path, max_side))?;
@@ -122,13 +135,21 @@ impl From<DecodingError> for Refusal {
 }
 
 /// The size of a PNG of `size_bytes`, and true for one of many pixels for that, which was seen to be whole.
-fn check(input: &mut (impl BufRead + Seek), size_bytes: u64, max_side: u32) -> Result<((u32, u32), bool), Refusal> {
+fn check(
+    input: &mut (impl BufRead + Seek),
+    size_bytes: u64,
+    max_side: u32,
+    hasher: Option<&mut Hasher>,
+) -> Result<((u32, u32), bool), Refusal> {
     let ((width, height), mut reader) = open(input, max_side)?;
     // Some kilobytes can hold 256 MiB of one colour, and a fault at their end: nothing is kept before all is seen to be
     // whole.
     let is_large = u64::from(width) * u64::from(height) * 4 > SPARE_BYTES + 16 * size_bytes;
     if is_large {
-        while reader.next_interlaced_row()?.is_some() {}
+        match hasher {
+            Some(hasher) if !reader.info().interlaced => each_row(&mut reader, |row| hasher.add(row))?,
+            _ => while reader.next_interlaced_row()?.is_some() {},
+        }
     }
     Ok(((width, height), is_large))
 }
@@ -136,18 +157,28 @@ fn check(input: &mut (impl BufRead + Seek), size_bytes: u64, max_side: u32) -> R
 /// The pixels of a PNG.
 fn pixels(input: &mut (impl BufRead + Seek), max_side: u32) -> Result<Rgba8, Refusal> {
     let ((width, height), mut reader) = open(input, max_side)?;
-    let (color, depth) = reader.output_color_type();
     let mut pixels = Vec::with_capacity(4 * width as usize * height as usize);
     if reader.info().interlaced {
+        let (color, depth) = reader.output_color_type();
         let mut samples = vec![0; reader.output_buffer_size().unwrap_or(0)];
         reader.next_frame(&mut samples)?;
         push_pixels(&samples, color, depth, &mut pixels);
     } else {
-        while let Some(row) = reader.next_row()? {
-            push_pixels(row.data(), color, depth, &mut pixels);
-        }
+        each_row(&mut reader, |row| pixels.extend(row))?;
     }
     Rgba8::new(width, height, pixels).map_err(|_| Refusal::TooLarge { width, height })
+}
+
+/// Takes the rows of a PNG that is not interlaced, from the top, as 8-bit RGBA.
+fn each_row(reader: &mut Reader<impl BufRead + Seek>, mut take: impl FnMut(&[u8])) -> Result<(), Refusal> {
+    let (color, depth) = reader.output_color_type();
+    let mut pixels = Vec::new();
+    while let Some(row) = reader.next_row()? {
+        pixels.clear();
+        push_pixels(row.data(), color, depth, &mut pixels);
+        take(&pixels);
+    }
+    Ok(())
 }
 
 /// The size of a PNG and what reads its rows, grey or RGB with an alpha.
@@ -183,7 +214,7 @@ fn push_pixels(samples: &[u8], color: ColorType, depth: BitDepth, pixels: &mut V
             );
         }
         (_, false) => pixels.extend(samples),
-        (_, true) => pixels.extend(samples.as_chunks().0.iter().flat_map(grey)),
+        (_, true) => samples.as_chunks().0.iter().for_each(|pixel| pixels.extend_from_slice(&grey(pixel))),
     }
 }
 
@@ -192,11 +223,7 @@ fn push_pixels(samples: &[u8], color: ColorType, depth: BitDepth, pixels: &mut V
 /// # Errors
 /// [`Error::Empty`] for a picture without pixels; [`Error::Output`] when the file cannot be written.
 pub fn write_png(path: &Path, picture: &Rgba8) -> Result<(), Error> {
-    if picture.pixels().is_empty() {
-        return Err(Error::Empty { path: path.into() });
-    }
-    let size = (picture.width(), picture.height());
-    Ok(file::write_with(path, |file| store(file, picture.pixels(), size, (ColorType::Rgba, BitDepth::Eight), None))?)
+    write_png_hashed(path, picture).map(drop)
 }
 
 /// As [`write_png`], and gives the SHA-256 of the file in lower-case hexadecimal: of what is written here, whatever else is
@@ -464,7 +491,7 @@ mod tests {
         let path = folder.path().join("black.png");
         let open = |bytes: &[u8], max_side: u32| {
             std::fs::write(&path, bytes).unwrap();
-            CheckedPng::open(&path, max_side)
+            CheckedPng::open(&path, max_side, None)
         };
         let whole = open(&bytes, MAX_SIDE).unwrap();
         assert!(whole.picture.is_none());

@@ -12,6 +12,7 @@ use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
 use super::shard::Shard;
+use super::shared_sweep::Assembled;
 use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Row, Swept};
 use crate::file::{check_writable, write};
@@ -122,7 +123,7 @@ pub struct Context<'a, S: Study> {
     /// The part of a sweep that this process measures, of several.
     pub shard: Option<Shard>,
     /// A record of all parts of the sweep, in place of measuring.
-    pub assembled: Option<PathBuf>,
+    pub assembled: Option<Assembled>,
     /// Output to the user.
     pub console: &'a dyn Console,
     /// Warnings that are still to be said.
@@ -202,8 +203,8 @@ impl<S: Study> Context<'_, S> {
                 format!("`{option}`: {} is not shared out; of {} these are: {known}", experiment.name, S::PAPER);
             return Err(Error::Input(message));
         }
-        let options = S::options();
-        let unheeded = options.iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
+        let unheeded =
+            S::options().into_iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
         unheeded.map_or(Ok(()), |option| Err(Error::Input(format!("`{}`: this experiment has none", option.name))))
     }
 
@@ -244,7 +245,7 @@ impl<S: Study> Context<'_, S> {
         let all: Vec<&Point<S>> = points.iter().collect();
         match (self.shard, &self.assembled) {
             (Some(shard), _) => Err(self.part(machine, &all, shard)?),
-            (None, Some(path)) => self.of_parts(machine, &all, path),
+            (None, Some(assembled)) => self.of_parts(machine, &all, assembled),
             (None, None) => self.measure(machine, &all),
         }
     }

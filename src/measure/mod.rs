@@ -18,7 +18,7 @@ pub mod picture;
 pub mod profile;
 pub mod result_table;
 pub mod shard;
-mod shared_sweep;
+pub mod shared_sweep;
 pub mod statistics;
 pub mod stress;
 pub mod study;

@@ -1,7 +1,7 @@
 //! Sweeps that several processes share: each measures its points and leaves a record of them, and the experiment is
 //! published from the record of all.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -14,8 +14,36 @@ use super::shard::Shard;
 use super::study::Study;
 use super::sweep::{Point, Row, Swept};
 use crate::content;
-use crate::report::record::Share;
+use crate::report::record::{Environment, Run, Share};
 use crate::report::{Record, environment, json as reader};
+
+/// What several processes have measured, put together by `fumarole assemble`.
+pub struct Assembled {
+    path: PathBuf,
+    environment: Environment,
+    runs: Vec<Run>,
+    share: Share,
+}
+
+impl Assembled {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that is no record, of one process, or of a part alone.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let failed = |reason: &str| assembled_error(path, reason);
+        let Record { environment, runs, share, .. } = reader::read(path).map_err(|e| failed(&e.to_string()))?;
+        let share = share.ok_or_else(|| failed("it is of one process; name what `fumarole assemble` has written"))?;
+        if share.shard.is_some() {
+            return Err(failed("it is one part alone; put all together with `fumarole assemble`"));
+        }
+        Ok(Assembled { path: path.into(), environment, runs, share })
+    }
+}
+
+fn assembled_error(path: &Path, reason: &str) -> Error {
+    Error::Input(format!("`assembled` {}: {reason}", path.display()))
+}
 
 impl<S: Study> Context<'_, S> {
     /// Measures the shard's points, dealt out one by one, unless it has done so before. What it gives ends the experiment.
@@ -63,36 +91,32 @@ impl<S: Study> Context<'_, S> {
     /// The rows of the points as other processes have measured them.
     ///
     /// # Errors
-    /// [`Error::Input`] for a record of another sweep, of a part of it, or of another machine.
-    pub(super) fn of_parts(&self, machine: &Machine, points: &[&Point<S>], path: &Path) -> Result<Swept, Error> {
-        let failed = |reason: String| Error::Input(format!("`assembled` {}: {reason}", path.display()));
-        let record = reader::read(path).map_err(|e| failed(e.to_string()))?;
-        let Some(share) = &record.share else {
-            return Err(failed("it is of one process; name what `fumarole assemble` has written".to_owned()));
-        };
-        if share.shard.is_some() {
-            return Err(failed("it is one part alone; put all together with `fumarole assemble`".to_owned()));
-        }
+    /// [`Error::Input`] for a record of another sweep or of another machine.
+    pub(super) fn of_parts(
+        &self,
+        machine: &Machine,
+        points: &[&Point<S>],
+        assembled: &Assembled,
+    ) -> Result<Swept, Error> {
+        let Assembled { path, environment, runs, share } = assembled;
+        let failed = |reason: &str| assembled_error(path, reason);
         if share.identity != self.identity()? {
-            return Err(failed("its points were measured with other options or files; give the same ones".to_owned()));
+            return Err(failed("its points were measured with other options or files; give the same ones"));
         }
-        if let Some([what, here, there]) = difference_of_machines(&machine.environment(), &record.environment) {
-            return Err(failed(format!(
+        if let Some([what, here, there]) = difference_of_machines(&machine.environment(), environment) {
+            return Err(failed(&format!(
                 "its {what} is {there}, and here {here}; publish it on a machine of that kind"
             )));
         }
-        let row = |(run, item): (_, &u32)| {
+        let row = |(run, item): (&Run, &u32)| {
             let point = points.get(*item as usize)?;
-            Some(Row { label: point.label.clone(), x: point.x, run })
+            Some(Row { label: point.label.clone(), x: point.x, run: run.clone() })
         };
         let items = &share.items;
-        let is_whole = record.runs.len() == items.len() && items.is_sorted() && !items.is_empty();
-        let rows: Option<Vec<Row>> = record.runs.into_iter().zip(items).map(row).collect();
+        let is_whole = runs.len() == items.len() && items.is_sorted() && !items.is_empty();
+        let rows: Option<Vec<Row>> = runs.iter().zip(items).map(row).collect();
         let rows = rows.filter(|_| is_whole);
-        Ok(Swept {
-            rows: rows.ok_or_else(|| failed("its runs are not those of the points".to_owned()))?,
-            stopped: None,
-        })
+        Ok(Swept { rows: rows.ok_or_else(|| failed("its runs are not those of the points"))?, stopped: None })
     }
 
     /// SHA-256 of everything that fixes the sweep's points and how they are measured, but the machine.

@@ -97,15 +97,19 @@ impl Film {
 
     /// A frame of its parts, which it has all.
     fn frame(&self, parts: &[(PathBuf, Part)]) -> Result<Rgba8, Failure> {
-        let mut pixels = Vec::new();
-        for (path, part) in parts {
+        let checked = |(path, part): &(PathBuf, Part)| {
             let picture = path.with_file_name(&part.picture);
-            let Some(rows) = part.read_picture(&picture)? else {
+            part.checked_picture(&picture)?.ok_or_else(|| {
                 let message =
                     format!("assembling {}: it is not the picture that was drawn; render it again", picture.display());
-                return Err(Failure::Input(message));
-            };
-            pixels.extend_from_slice(rows.pixels());
+                Failure::Input(message)
+            })
+        };
+        // All are seen to be right before the first takes its memory.
+        let checked = parts.iter().map(checked).collect::<Result<Vec<_>, _>>()?;
+        let mut pixels = Vec::new();
+        for rows in checked {
+            pixels.extend_from_slice(rows.into_picture()?.pixels());
         }
         Ok(Rgba8::new(self.size[0], self.size[1], pixels)?)
     }

@@ -354,8 +354,10 @@ impl<S: Study> Ascent<'_, S> {
         self.axis.set(&mut setup, first)?;
         let started = Instant::now();
         let children = Children::new(&self.child_arguments, self.output.quiet)?;
+        // Before a device is opened.
+        let left = file.left(self.limits.anew)?;
         let template = self.template(&children)?;
-        let known = file.known(&template, self.limits.anew)?;
+        let known = file.known(left, &template)?;
         let mut climber = climber::MachineClimber {
             children,
             template,

@@ -25,28 +25,35 @@ impl File {
         File { path }
     }
 
-    /// The series that an earlier call left under the same identity; none where there is no file, or all is to be measured
-    /// anew.
+    /// What an earlier call left; nothing where there is no file, or all is to be measured anew.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a file that cannot be read, and for a record of other steps.
-    pub fn known(&self, template: &StressRecord, is_anew: bool) -> Result<Vec<Series>, Failure> {
+    /// [`Failure::Input`] for a file that cannot be read or is no such record.
+    pub fn left(&self, is_anew: bool) -> Result<Option<StressRecord>, Failure> {
+        if is_anew {
+            return Ok(None);
+        }
         let path = self.path.display();
         let text = match file::read_text(&self.path, MAX_BYTES) {
             Ok(text) => text,
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(_) if is_anew => return Ok(Vec::new()),
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
             Err(e) => return Err(Failure::Input(format!("going on with {path}: {e}; move it away, or use --anew"))),
         };
-        if is_anew {
-            return Ok(Vec::new());
-        }
         if json::schema(&text).as_deref() != Some(SCHEMA) {
             let message =
                 format!("going on with {path}: it is no record of stress; name another --json, or use --anew");
             return Err(Failure::Input(message));
         }
-        let record: StressRecord = json::document(&text, &self.path)?;
+        Ok(Some(json::document(&text, &self.path)?))
+    }
+
+    /// The series of what was left, of the same steps as those of `template`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a record of other steps.
+    pub fn known(&self, left: Option<StressRecord>, template: &StressRecord) -> Result<Vec<Series>, Failure> {
+        let path = self.path.display();
+        let Some(record) = left else { return Ok(Vec::new()) };
         if record.identity != template.identity {
             let what = differences(&record, template);
             return Err(Failure::Input(format!(

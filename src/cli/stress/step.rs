@@ -1,6 +1,6 @@
 //! The process of one step: it measures, writes its report and ends.
 
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::PathBuf;
 use std::thread;
 
@@ -51,7 +51,7 @@ pub fn run<S: Study>(
     schedule: Schedule,
 ) -> Result<(), Failure> {
     let Some(path) = &step.step_report else { return Ok(()) };
-    end_with_parent();
+    end_with_parent().map_err(|e| Failure::Running(format!("starting a thread: {e}")))?;
     host_memory::be_killed_first();
     let options = machine.resolve(0);
     let report = match step.step_value {
@@ -83,11 +83,12 @@ pub fn run<S: Study>(
 }
 
 /// Ends this process when its parent does, whatever ends that: the parent holds the other end of standard input.
-fn end_with_parent() {
-    thread::spawn(|| {
+fn end_with_parent() -> io::Result<()> {
+    let wait = || {
         let mut rest = Vec::new();
         // An error is an end, too.
-        let _ = std::io::stdin().lock().read_to_end(&mut rest);
+        let _ = io::stdin().lock().read_to_end(&mut rest);
         std::process::exit(1);
-    });
+    };
+    thread::Builder::new().spawn(wait).map(drop)
 }

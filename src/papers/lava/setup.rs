@@ -149,11 +149,12 @@ impl Study for Setup {
     /// [`Error::Image`].
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        let rock = self.rock.load()?;
         let space_m = self.parameters.space_m;
         let objects =
             self.objects.iter().map(|object| object.load(space_m, self.crease_deg)).collect::<Result<_, _>>()?;
         let particles = Particles::of(&self.parameters).over(self.load_bed()?);
+        // Last, for a small file can have many texels.
+        let rock = self.rock.load()?;
         Ok(Scene { particles, rock, objects })
     }
 

@@ -305,20 +305,22 @@ fn small_pictures_of_many_pixels() {
 
 #[test]
 fn records_of_many_values() {
-    let compare = || fumarole("compare record.json");
+    let compare: fn() -> Program = || fumarole("compare record.json");
+    let assembled: fn() -> Program = || caustics("experiment 5-1 --device none --assembled");
     let example = include_str!("../../data/record.json");
     let marker = "\"config\": {";
     assert!(example.contains(marker));
     let with = |config: String| example.replacen(marker, &format!("{marker}{config}"), 1);
-    let empties = with(format!("\"x\": [{}[]],", "[],".repeat(3_000_000)));
-    refused(compare, "values.json", empties.as_bytes(), &["config", "too many values"]);
-    let deep = with(format!("\"x\": {},", "[".repeat(500_000)));
-    refused(compare, "deep.json", deep.as_bytes(), &["deep.json"]);
-    let text = with(format!("\"x\": \"{}\", \"seed\"", "a".repeat(3_000_000)));
-    refused(compare, "text.json", text.as_bytes(), &["text.json"]);
     let negative = example.replacen("\"samples\": [", "\"samples\": [-1.0, ", 1);
     assert_ne!(negative, example);
+    for program in [compare, assembled] {
+        let record = |text: &str, parts: &[&str]| refused(program, "a.json", text.as_bytes(), parts);
+        record(&with(format!("\"x\": [{}[]],", "[],".repeat(3_000_000))), &["config", "too many values"]);
+        record(&with(format!("\"x\": {},", "[".repeat(500_000))), &["a.json"]);
+        record(&with(format!("\"x\": \"{}\", \"seed\"", "a".repeat(3_000_000))), &["a.json"]);
+    }
     refused(compare, "negative.json", negative.as_bytes(), &["-1 ms", "no time is negative"]);
+    refused(assembled, "a.json", example.as_bytes(), &["it is of one process"]);
 }
 
 /// Three million samples take no minutes.

@@ -1,8 +1,8 @@
 //! Costs of a refusal by the readers of materials, bodies, parts of films and records, of much in few bytes.
 
 use super::hostile_cost::{black_png, refused, refused_of};
-use super::hostile_readers::{PART, STRESS, TABLES, VERDICTS, with, with_items};
-use super::program::{Program, burning, folder, fumarole, terrain};
+use super::hostile_readers::{PART, STRESS, STRESS_READERS, TABLES, VERDICTS, with, with_items};
+use super::program::{burning, folder, fumarole, terrain};
 
 const WOOD: &str = "[[material]]\nkind = \"wood\"\n";
 
@@ -90,9 +90,7 @@ fn comparisons_and_tables_of_many_values() {
 
 #[test]
 fn records_of_many_small_things() {
-    let assemble: fn() -> Program = || fumarole("assemble");
-    let report: fn() -> Program = || fumarole("report");
-    for (program, name) in [(assemble, "parts/a-shard-0-of-2.json"), (report, "a.json")] {
+    for (program, name) in STRESS_READERS {
         let stress = |bytes: &[u8], part| refused(program, name, bytes, &["a", part]);
         stress(&with_items(STRESS, "\"command\":[", "\"a\"", 8_400_000), "too many values");
         let pass = r#"{"name":"","kind":"host","calls":1}"#;

@@ -1,9 +1,18 @@
 //! Costs of a refusal by the readers of meshes in binary, maps with files beside them, materials, bodies, and documents.
 
 use super::hostile_cost::{black_png, cut_png, mesh, refused, refused_of};
-use super::program::{Program, burning, fumarole, terrain};
+use super::program::{Program, burning, caustics, fumarole, lava, terrain};
 
 pub(super) const STRESS: &str = include_str!("../../../fuzz/corpus/stress/whole");
+/// A program, and the name under which it is given a file.
+type Reader = (fn() -> Program, &'static str);
+
+/// Those of records of stress.
+pub(super) const STRESS_READERS: [Reader; 3] = [
+    (|| fumarole("assemble"), "parts/a-shard-0-of-2.json"),
+    (|| fumarole("report"), "a.json"),
+    (|| caustics("stress --device none --json"), "go-on.json"),
+];
 pub(super) const VERDICTS: &str = include_str!("../../../fuzz/corpus/verdicts/whole");
 pub(super) const TABLES: &str = include_str!("../../../fuzz/corpus/tables/whole");
 pub(super) const PART: &str = include_str!("../../../fuzz/corpus/part/whole");
@@ -132,6 +141,15 @@ fn world_files() {
     refused_of(placed, &[("a.png", &large), ("a.pgw", b"1 0 0 -1 0 0")], &["gone.asc"]);
 }
 
+/// The rock is decoded when all else is right.
+#[test]
+fn rocks() {
+    let rock = || lava("render --object gone.obj@0,0,0 --rock");
+    refused_of(rock, &[("a.png", &black_png(4_096))], &["gone.obj"]);
+    let bed = || lava("render --bed gone.asc --rock");
+    refused_of(bed, &[("a.png", &black_png(4_096))], &["gone.asc"]);
+}
+
 #[test]
 fn materials() {
     let materials = || burning("render --mesh box --materials");
@@ -173,18 +191,22 @@ fn parts_of_films() {
     let endless = with(PART, "[0,4]", "[0,4294967295]");
     part(&[&endless[..], &b" ".repeat(1_000_000)].concat(), "4294967295 frames");
     let whole = with(PART, "\"frames\":[0,4]", "\"frames\":[3,4]");
-    let whole = with(&String::from_utf8(whole).unwrap(), "\"rows\":[2,8]", "\"rows\":[0,8]");
-    let files = [("parts/a.png.part.json", &whole[..]), ("parts/f-0003.rows-2-8.png", &cut_png(8_192))];
-    refused_of(assemble, &files, &["f-0003.rows-2-8.png", "give a whole PNG"]);
+    let whole = with(&String::from_utf8(whole).unwrap(), "\"rows\":[2,8]", "\"rows\":[0,8192]");
+    let whole = with(&String::from_utf8(whole).unwrap(), "[8,8]", "[8192,8192]");
+    let picture = |bytes: &[u8], part| {
+        let files = [("parts/a.png.part.json", &whole[..]), ("parts/f-0003.rows-2-8.png", bytes)];
+        refused_of(assemble, &files, &["f-0003.rows-2-8.png", part]);
+    };
+    picture(&cut_png(8_192), "give a whole PNG");
+    picture(&black_png(8_192), "not the picture that was drawn");
 }
 
 #[test]
 fn records_of_stress() {
-    let assemble: fn() -> Program = || fumarole("assemble");
-    let report: fn() -> Program = || fumarole("report");
-    for (program, name) in [(assemble, "parts/a-shard-0-of-2.json"), (report, "a.json")] {
-        let stress = |bytes: &[u8], part| refused(program, name, bytes, &["a", part]);
-        stress(&with(STRESS, "fumarole.stress/1", &"a ".repeat(8_000_000)), "its schema is \"a a");
+    for (program, name) in STRESS_READERS {
+        let stress = |bytes: &[u8], part| refused(program, name, bytes, &[part]);
+        let of_schema = if name == "go-on.json" { "it is no record of stress" } else { "its schema is \"a a" };
+        stress(&with(STRESS, "fumarole.stress/1", &"a ".repeat(8_000_000)), of_schema);
         stress(&with_items(STRESS, "\"series\":[", "[]", 6_000_000), "field series[0]: invalid length 0");
         stress(&with_items(STRESS, "\"samples\":[", "{}", 6_000_000), "samples[0]: invalid type");
         stress(
