@@ -93,14 +93,31 @@ fn gltf(data: &[u8]) {
 }
 
 fn height_map(files: &[(&str, &[u8])]) {
-    match HeightMapSource::File(written(files)).load() {
+    height_map_of(written(files));
+}
+
+fn height_map_of(path: PathBuf) {
+    match HeightMapSource::File(path).load() {
         Ok(map) => assert!(map.samples().len() == map.width() as usize * map.height() as usize),
         Err(error) => is_one_line(&error),
     }
 }
 
-/// As it is, which only a tile's own size lets pass, and repeated to a tile of three arc seconds.
+/// A folder of one file, whose name stands before the first zero byte; without one a tile as it is, which only a tile's own
+/// size lets pass, and repeated to a tile of three arc seconds.
 fn hgt(data: &[u8]) {
+    let (name, samples) = parted(data);
+    let is_name = |name: &&str| {
+        (1..200).contains(&name.len()) && !name.contains(|letter: char| letter == '/' || letter.is_control())
+    };
+    if let Some(name) = std::str::from_utf8(name).ok().filter(is_name) {
+        let folder = written(&[("none", b"")]).with_file_name("tiles");
+        fs::create_dir_all(&folder).expect("room for a folder");
+        let file = folder.join(format!("{name}.hgt"));
+        fs::write(&file, samples).expect("room for the file");
+        height_map_of(folder);
+        return fs::remove_file(file).expect("it is there");
+    }
     height_map(&[("N37E140.hgt", data)]);
     if !data.is_empty() {
         let tile: Vec<u8> = data.iter().copied().cycle().take(2 * 1201 * 1201).collect();
