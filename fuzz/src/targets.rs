@@ -14,11 +14,18 @@ use fumarole::report::tables::Tables;
 use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, RowSource, Rows, load_voxels, world_file};
 use fumarole::{cli, image, report, shader_build};
 
+#[path = "targets/cached.rs"]
+mod cached;
+#[path = "targets/parts.rs"]
+mod parts;
+#[path = "targets/settings.rs"]
+mod settings;
+
 /// A reader.
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 31] = [
+pub const ALL: [(&str, Target); 37] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -50,6 +57,12 @@ pub const ALL: [(&str, Target); 31] = [
     ("bodies", listed_bodies),
     ("include", include),
     ("arguments", arguments),
+    ("shards", parts::shards),
+    ("film", parts::film),
+    ("assembled", parts::assembled),
+    ("page", parts::page),
+    ("settings", settings::settings),
+    ("cached", cached::cached),
 ];
 
 /// Writes the files into a folder of this thread, and gives the first one's path.
@@ -103,8 +116,8 @@ fn height_map_of(path: PathBuf) {
     }
 }
 
-/// A folder of one file, whose name stands before the first zero byte; without one a tile as it is, which only a tile's own
-/// size lets pass, and repeated to a tile of three arc seconds.
+/// A folder of one file, whose name stands before the first zero byte; without one a tile as it is, which only a tile's
+/// own size lets pass, and repeated to a tile of three arc seconds.
 fn hgt(data: &[u8]) {
     let (name, samples) = parted(data);
     let is_name = |name: &&str| {
@@ -125,25 +138,28 @@ fn hgt(data: &[u8]) {
     }
 }
 
-/// As a map, its first overview as one, and its rows one after another.
+/// As a map, its first overview as one, and the rows of both one after another.
 fn tif(data: &[u8]) {
     height_map(&[("a.tif", data)]);
     let path = written(&[("a.tif", data)]);
     if let Err(error) = HeightMapSource::File(path.clone()).load_overview(1) {
         is_one_line(&error);
     }
-    let mut samples = 0;
-    let mut take = |rows: Rows<'_>| {
-        samples += match rows {
-            Rows::Steps(values) => values.len(),
-            Rows::Float(values) => values.len(),
+    for overview in [0, 1] {
+        let mut samples = 0;
+        let mut take = |rows: Rows<'_>| {
+            samples += match rows {
+                Rows::Steps(values) => values.len(),
+                Rows::Float(values) => values.len(),
+            };
+            true
         };
-        true
-    };
-    match RowSource::geotiff(&path, 0).and_then(|rows| rows.map(|rows| rows.read(&path, &mut take)).transpose()) {
-        Ok(Some(Some(map))) => assert!(samples == map.width() as usize * map.height() as usize),
-        Ok(_) => {}
-        Err(error) => is_one_line(&error),
+        let source = RowSource::geotiff(&path, overview);
+        match source.and_then(|rows| rows.map(|rows| rows.read(&path, &mut take)).transpose()) {
+            Ok(Some(Some(map))) => assert!(samples == map.width() as usize * map.height() as usize),
+            Ok(_) => {}
+            Err(error) => is_one_line(&error),
+        }
     }
 }
 
@@ -327,5 +343,12 @@ fn arguments(data: &[u8]) {
     let words = words.map(|word| std::os::unix::ffi::OsStringExt::from_vec(word.to_vec()));
     #[cfg(not(unix))]
     let words = words.map(|word| OsString::from(String::from_utf8_lossy(word).into_owned()));
-    let _result = cli::parsed(std::iter::once(OsString::from("fumarole")).chain(words));
+    let line: Vec<OsString> = std::iter::once(OsString::from("fumarole")).chain(words).collect();
+    #[cfg(feature = "window")]
+    match cli::view_reordered(line.clone()) {
+        // The paper that is shown may be added.
+        Ok(reordered) => assert!((0..=1).contains(&(reordered.len() - line.len()))),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+    let _result = cli::parsed(line);
 }

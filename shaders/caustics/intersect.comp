@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
+#include "caustics/unfinished.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/shadow-{SHADOW}.glsl"
 #include "caustics/landing.glsl"
@@ -17,6 +18,12 @@ layout(std430, set = 0, binding = 5) buffer Landings {
 layout(std430, set = 0, binding = 11) buffer Intensities {
     float list[]; // I_c where each ray lands, negative where the light is turned over, 0 where it is not known
 } intensities;
+
+// Turns of loops on the way of a ray, all together: fewer than lavapipe grants to the loops of a shader, and room for
+// what follows. One surface takes 36,866 at most.
+const int MOST_TURNS = 60000;
+
+int turns = 0;
 
 // How far above a ray a surface may be at the texel that the ray comes to, as a slope that goes on rising; farther, it is an edge.
 float most_rise(ivec2 texel, float found, vec2 slope) {
@@ -32,16 +39,20 @@ float most_rise(ivec2 texel, float found, vec2 slope) {
 float met_at(ivec2 texel, float above, float height, vec2 slope) {
 #ifdef LAYERS_SEVERAL
     float over = 1.0e30;
-    for (int layer = 0; layer < layer_count(); layer++) {
+    int layer = 0;
+    for (; layer < layer_count(); layer++) {
+        turns++;
         float top = height_of(layer, texel);
         if (top <= above) {
             float ceiling = layer > 0 ? ceiling_of(layer, texel) : 1.0e30;
-            // A sheet that goes on rising is met; under any other the ray passes.
+            // A sheet that goes on rising is met; under any other the ray passes. That looks at all layers once more.
+            turns += is_receiver(ceiling) ? 0 : layer_count();
             bool is_inside = is_receiver(ceiling) ? above > ceiling : over - above <= most_rise(texel, over, slope);
             return is_inside ? over : (top >= height ? top : -1.0e30);
         }
         over = top;
     }
+    is_cut = is_cut || layer < layer_count();
     return over;
 #else
     float top = height_at(texel);
@@ -72,7 +83,9 @@ vec4 first_hit(vec3 origin, vec2 slope) {
     float above = top;
     float height = top;
     float found = -1.0e30;
-    for (int from = 0; from <= steps && found < height; from += STRIDE) {
+    int from = 0;
+    for (; from <= steps && found < height && turns < MOST_TURNS; from += STRIDE) {
+        turns++;
         int to = min(from + STRIDE - 1, steps);
         // Exactly the lowest at the end, where nothing can be missed.
         float lowest = to == steps ? bottom : mix(top, bottom, float(to) / float(steps));
@@ -82,7 +95,9 @@ vec4 first_hit(vec3 origin, vec2 slope) {
             height = lowest;
             above = lowest;
         }
-        for (int i = from; i <= to && near.y >= lowest; i++) {
+        int i = from;
+        for (; i <= to && near.y >= lowest; i++) {
+            turns++;
             height = i == steps ? bottom : mix(top, bottom, float(i) / float(steps));
             found = met_at(ivec2(floor(place_at(origin, slope, height))), above, height, slope);
             if (found >= height) {
@@ -90,7 +105,9 @@ vec4 first_hit(vec3 origin, vec2 slope) {
             }
             above = height;
         }
+        is_cut = is_cut || (i <= to && near.y >= lowest && found < height);
     }
+    is_cut = is_cut || (from <= steps && found < height);
     if (found < height) {
         return vec4(0.0);
     }
@@ -155,4 +172,7 @@ void main() {
     }
     landings.list[index] = whole_of(landing);
     intensities.list[index] = light;
+    if (is_cut) {
+        unfinished.intersect = 1u;
+    }
 }

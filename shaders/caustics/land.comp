@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
+#include "caustics/unfinished.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/hit-sums.glsl"
 #include "caustics/cover.glsl"
@@ -200,7 +201,6 @@ void main() {
     ivec2 origin = ivec2(base);
     ivec2 from = max(ivec2(floor(low)), -origin);
     ivec2 to = min(ivec2(floor(high)), ivec2(int(plane.map_size) - 1) - origin);
-    bool is_cut = false;
     int y = from.y;
     for (; y <= to.y; y++) {
         Row row;

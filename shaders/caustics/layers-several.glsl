@@ -24,11 +24,13 @@ float ceiling_of(int layer, ivec2 texel) {
 int layer_near(ivec2 texel, float about) {
     int found = 0;
     float least = 1.0e30;
-    for (int layer = 0; layer < layer_count(); layer++) {
+    int layer = 0;
+    for (; layer < layer_count(); layer++) {
         float away = abs(height_of(layer, texel) - about);
         found = away < least ? layer : found;
         least = min(least, away);
     }
+    is_cut = is_cut || layer < layer_count();
     return found;
 }
 
@@ -38,12 +40,14 @@ float height_near(ivec2 texel, float about) {
 
 // The surface below a height; -1 inside the receiver, and below all that is known of it.
 int room_at(ivec2 texel, float height) {
-    for (int layer = 0; layer < layer_count(); layer++) {
+    int layer = 0;
+    for (; layer < layer_count(); layer++) {
         if (height_of(layer, texel) <= height) {
             float ceiling = layer > 0 ? ceiling_of(layer, texel) : -1.0e30;
             return is_receiver(ceiling) && height > ceiling ? -1 : layer;
         }
     }
+    is_cut = is_cut || layer < layer_count();
     return -1;
 }
 

@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
+#include "caustics/unfinished.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/hit-sums.glsl"
 #include "caustics/cover.glsl"
@@ -21,9 +22,6 @@ const uint SHARING = 8u;
 const float LEAST_TURNED = 0.25;
 const float STEEPEST = 8.0;
 const float LEAST_MOVED = 0.3;
-
-// Set where the driver leaves a loop before its end.
-bool is_cut = false;
 
 // True where the receiver stands between the surface of that layer at a texel and the light: a beam ends at the first surface that it
 // meets. Texel after texel, but where nothing near the way is high enough.

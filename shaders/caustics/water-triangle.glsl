@@ -16,12 +16,6 @@ layout(std430, set = 0, binding = 8) buffer Straddling {
     Straddler list[];
 } straddling;
 
-// Invocations of each pass whose loops the driver left before their end, of all frames since the host last looked.
-layout(std430, set = 0, binding = 9) buffer Unfinished {
-    uint land;
-    uint straddle;
-} unfinished;
-
 // The area vector in texels of the map, on the upper side.
 vec3 face_of(Ray a, Ray b, Ray c) {
     vec3 face = 0.5 * cross(b.origin - a.origin, c.origin - a.origin);

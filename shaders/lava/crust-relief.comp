@@ -16,6 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lava/crust.glsl"
 #include "lava/hash.glsl"
 #include "lava/face.glsl"
+#include "lava/crowded.glsl"
+#include "lava/stretches.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres
@@ -143,21 +145,24 @@ bool is_kept(uint particle) {
     return evenly(particle) < crust.kept;
 }
 
-// Of a stretch the upper ones, near the surface: pieces and seams take two walks each through nine stretches.
-uint first_of(uvec2 stretch) {
-    return max(stretch.x, max(stretch.y, MOST / 4u) - MOST / 4u);
-}
+// Pieces and seams take two walks each through nine stretches.
+const uint MOST_OF_RELIEF = MOST / 4u;
+// Lengths of a piece, of the particles whose pieces may reach a place: of a particle that lies farther from it by half
+// a length than the nearest one, the border to the nearest one's piece is farther from it than half a length, where
+// neither gaps nor edges are.
+const float PIECES_REACH = 3.0;
 
 Piece piece_at(vec3 place_m) {
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
-    int highest = int(flow.counts.y) - 1;
+    // A step moves lava by less than the kernel's radius.
+    float reach_m = PIECES_REACH * crust.piece_m + flow.support_m;
     float nearest = FAR_M;
     vec3 middle = vec3(0.0); // from there to the place
     uint particle = 0u;
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            for (uint i = first_of(stretch); i < stretch.y; i++) {
+            uvec2 stretch = stretch_near(cell, ivec2(x, z), place_m.y, reach_m, MOST_OF_RELIEF);
+            for (uint i = stretch.x; i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 float squared = dot(way, way);
                 uint number = items.list[i].y;
@@ -169,11 +174,13 @@ Piece piece_at(vec3 place_m) {
             }
         }
     }
+    float within_m = (PIECES_REACH - 0.5) * crust.piece_m;
+    is_crowded = is_crowded || (is_narrowed && nearest > within_m * within_m);
     float to_edge_m = FAR_M;
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            for (uint i = first_of(stretch); i < stretch.y; i++) {
+            uvec2 stretch = stretch_near(cell, ivec2(x, z), place_m.y, reach_m, MOST_OF_RELIEF);
+            for (uint i = stretch.x; i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 uint number = items.list[i].y;
                 // The plane between two middles cuts the surface in a line.
@@ -195,13 +202,14 @@ const uint NO_TOE = 0xffffffffu;
 // has more than they do.
 float seam_at(vec3 place_m) {
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
-    int highest = int(flow.counts.y) - 1;
+    // The kernel's radius, and the step's motion.
+    float reach_m = 2.0 * flow.support_m;
     vec3 nearest = vec3(FAR_M); // squared, of three toes
     uvec3 toe = uvec3(NO_TOE);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            for (uint i = first_of(stretch); i < stretch.y; i++) {
+            uvec2 stretch = stretch_near(cell, ivec2(x, z), place_m.y, reach_m, MOST_OF_RELIEF);
+            for (uint i = stretch.x; i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz);
                 float squared = dot(way, way);
                 if (squared < nearest.z) {
@@ -233,8 +241,8 @@ float seam_at(vec3 place_m) {
     vec3 shares = vec3(0.0);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            for (uint i = first_of(stretch); i < stretch.y; i++) {
+            uvec2 stretch = stretch_near(cell, ivec2(x, z), place_m.y, reach_m, MOST_OF_RELIEF);
+            for (uint i = stretch.x; i < stretch.y; i++) {
                 float weight = kernel(length(apart(place_m - predicted.list[i].xyz)) / flow.support_m);
                 uint own = toes.list[items.list[i].y];
                 shares += weight * vec3(own == toe.x ? 1.0 : 0.0, own == toe.y ? 1.0 : 0.0, own == toe.z ? 1.0 : 0.0);
@@ -327,6 +335,9 @@ void main() {
             float crack = (1.0 - smoothstep(0.0, CRACK, seam)) * (1.0 - grown);
             glowing_k = mix(glowing_k, max(glowing_k, surface.core_k), crack);
         }
+    }
+    if (is_crowded) {
+        crowded.by_relief = 1u;
     }
     float height_m = ground_m + max(surface.lava_m + relief_m, min(surface.lava_m, 0.5 * crust.least_m));
     imageStore(heights, column, vec4(0.0, 0.0, 0.0, height_m));

@@ -23,7 +23,7 @@ layout(set = 0, binding = 13, std430) buffer NeighbourCounts {
 
 #ifdef PLACES_BEGAN
 layout(set = 0, binding = 5, std430) buffer Crowded {
-    uint any; // 1 where a stretch has more particles than a loop may
+    uint by_neighbours; // 1 where a stretch has more particles than a loop may; others follow, in crowded.glsl
 } crowded;
 
 const float REACH = 1.0; // in radii of the kernel
@@ -71,7 +71,7 @@ void main() {
     neighbour_counts.list[at] = count <= most ? count : WALKS;
 #ifdef PLACES_BEGAN
     if (is_crowded) {
-        crowded.any = 1u;
+        crowded.by_neighbours = 1u;
     }
 #endif
 }

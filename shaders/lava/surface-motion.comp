@@ -10,6 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lava/sph.glsl"
 #include "lava/bed.glsl"
+#include "lava/crowded.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres
@@ -40,11 +41,13 @@ void main() {
     vec2 way_m = vec2(0.0);
     float warmth = 0.0;
     vec2 weights = vec2(0.0);
+    bool is_crowded = false;
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            // Of too many the highest.
+            // Of too many the highest. All count alike for the mean temperature, so that none may be left out.
             uint first = max(stretch.x, max(stretch.y, MOST) - MOST);
+            is_crowded = is_crowded || first > stretch.x;
             for (uint i = first; i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz) / flow.support_m;
                 float halvings = min(HALVES_A_SUPPORT * abs(way.y), MOST_HALVINGS);
@@ -55,6 +58,9 @@ void main() {
                 warmth += near * heat.list[i].x;
             }
         }
+    }
+    if (is_crowded) {
+        crowded.by_motion = 1u;
     }
     bool is_there = weights.x > 0.0;
     vec3 found = is_there ? vec3(way_m / (weights.x * flow.time_step_s), warmth / weights.y) : vec3(0.0);

@@ -10,6 +10,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lava/sph.glsl"
 #include "lava/face.glsl"
+#include "lava/crowded.glsl"
+#include "lava/stretches.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
     vec4 list[]; // metres
@@ -45,16 +47,15 @@ void main() {
     vec2 middle_m = (vec2(column) + 0.5) / vec2(columns) * flow.space_m.xz;
     vec3 place_m = vec3(middle_m.x, texelFetch(normal_height, column, 0).w, middle_m.y);
     ivec2 cell = cell_of(vec3(place_m.x, 0.0, place_m.z)).xz;
-    int highest = int(flow.counts.y) - 1;
+    // Lower ones weigh 2^-40 of one at the surface, and 2^-35 if the step has moved them by the kernel's radius.
+    float reach_m = MOST_HALVINGS / HALVES_A_SUPPORT * flow.support_m;
     float weights = 0.0;
     float sum = 0.0;
     vec4 carried_m = vec4(0.0);
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
-            uvec2 stretch = stretch_of(cell, ivec2(x, z), 0, highest);
-            // Of too many the highest.
-            uint first = max(stretch.x, max(stretch.y, MOST) - MOST);
-            for (uint i = first; i < stretch.y; i++) {
+            uvec2 stretch = stretch_near(cell, ivec2(x, z), place_m.y, reach_m, MOST);
+            for (uint i = stretch.x; i < stretch.y; i++) {
                 vec3 way = apart(place_m - predicted.list[i].xyz) / flow.support_m;
                 float halvings = min(HALVES_A_SUPPORT * abs(way.y), MOST_HALVINGS);
                 float weight = kernel(length(way.xz)) * exp2(-halvings);
@@ -63,6 +64,9 @@ void main() {
                 carried_m += weight * carried.list[i];
             }
         }
+    }
+    if (is_crowded) {
+        crowded.by_temperature = 1u;
     }
     bool is_there = weights > 0.0;
     float kelvin = is_there ? sum / weights : 0.0;

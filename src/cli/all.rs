@@ -10,6 +10,7 @@ use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::pool;
+use super::reading;
 use super::report;
 use super::watch::interrupted;
 use crate::measure::Error;
@@ -72,9 +73,10 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     page.iter().try_for_each(|page| outcome::check_file(page))?;
 
     pool::start()?;
-    let mut pictures = Pictures { folder: &output.out, files: Vec::new() };
+    let read = reading::by_machine(&arguments.machine);
+    let mut pictures = Pictures { folder: &output.out, files: Vec::new(), read };
     papers::each(&mut pictures)?;
-    outcome::check_apart(output.files().chain(&page).chain(&pictures.files), &[])?;
+    outcome::check_apart(output.files().chain(&page).chain(&pictures.files), &pictures.read)?;
 
     // Every paper runs on one device, so that their figures compare.
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
@@ -105,6 +107,8 @@ struct Pictures<'a> {
     folder: &'a Path,
     /// Those of the papers so far.
     files: Vec<PathBuf>,
+    /// Files that the papers so far read, and the shaders.
+    read: Vec<PathBuf>,
 }
 
 impl Visitor for Pictures<'_> {
@@ -114,6 +118,7 @@ impl Visitor for Pictures<'_> {
         let files = pictures::<S>(self.folder);
         files.iter().try_for_each(|picture| outcome::check_file(picture))?;
         self.files.extend(files);
+        self.read.extend(reading::named(&S::parameters(), &S::quick()));
         Ok(())
     }
 }

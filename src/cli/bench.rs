@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::options::{CaptureTool, CommonArgs, DepthArgs, FRAMES, MeasureArgs, OutputArgs, REPEAT};
 use super::outcome;
 use super::processes;
+use super::reading;
 use super::spelling;
 use super::watch::{interrupted, patiently, watched};
 use crate::gpu::{Mode, RenderDoc};
@@ -34,7 +35,7 @@ pub fn publish<S: Study>(
     let pictures: Vec<PathBuf> = output.image.iter().flat_map(|named| picture_files(named, variants)).collect();
     pictures.iter().try_for_each(|path| outcome::check_file(path))?;
     let documents = output.files().filter(|path| Some(*path) != output.image.as_ref());
-    outcome::check_apart(documents.chain(&pictures), &outcome::read_by(study))?;
+    outcome::check_apart(documents.chain(&pictures), &reading::by_study(study, &common.machine))?;
     if *processes > 1 {
         let (record, failed) = processes::run(*processes, output.quiet)?;
         // The first process has written the pictures and the trace.

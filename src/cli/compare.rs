@@ -62,6 +62,11 @@ pub struct VerdictArgs {
 pub struct Side(Vec<PathBuf>);
 
 impl Side {
+    /// The files of its records.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.0
+    }
+
     /// Reads its records.
     ///
     /// # Errors
@@ -136,8 +141,9 @@ impl VerdictArgs {
 }
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
-    let read: Vec<PathBuf> = arguments.a.0.iter().chain(&arguments.b.0).cloned().collect();
-    outcome::check_apart(&arguments.verdict.json, &read)?;
+    let json = arguments.verdict.json.iter().filter(|path| path.as_os_str() != "-");
+    json.clone().try_for_each(|path| file::check_writable(path))?;
+    outcome::check_apart(json, &[arguments.a.files(), arguments.b.files()].concat())?;
     let (a, b) = (arguments.a.read()?, arguments.b.read()?);
     let options = match arguments.blocks {
         true => arguments.verdict.options(Design::Blocks).for_blocks(&a, &b),

@@ -1,7 +1,7 @@
 //! A paper's command line, made of its declarations: options of its parameters, and the verbs.
 
 use std::ffi::{OsStr, OsString};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
@@ -12,7 +12,8 @@ use super::options::{CommonArgs, DepthArgs, FRAMES_HELP, MachineArgs, REPEAT_HEL
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, help, loading, passes, pool, render, spelling};
+use super::{bench, help, loading, passes, pool, reading, render, spelling};
+use crate::file;
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
@@ -329,6 +330,14 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     result
 }
 
+/// The files that a bench of these arguments reads; none where they are refused.
+pub fn read_by_bench<S: Study>(matches: &ArgMatches) -> Vec<PathBuf> {
+    match (Typed::<S>::new(matches).resolve(), MachineArgs::from_arg_matches(matches)) {
+        (Ok(setup), Ok(machine)) => reading::by_study(&setup, &machine),
+        _ => Vec::new(),
+    }
+}
+
 fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
     let typed = Typed::<S>::new(matches);
     match verb {
@@ -395,8 +404,22 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
         doubts: Doubts::default(),
     };
     *context.setup.preset_mut() = Some(experiment.name.to_owned());
-    outcome::check_apart(&[context.json_file(), context.csv_file()], &outcome::read_by(&context.setup))?;
+    let mut read = reading::by_study(&context.setup, &common.machine);
+    read.extend(reading::named(&S::options(), &context.options));
+    read.extend(matches.get_one::<PathBuf>("assembled").cloned());
+    let mut written = vec![context.json_file(), context.csv_file()];
+    // Among the files that it names itself are pictures, plots and tables.
+    written.extend(read.iter().filter_map(|path| own_file(&context, path)).next());
+    outcome::check_apart(&written, &read)?;
     Ok(context.run(experiment)?)
+}
+
+/// The file of the experiment's own, by the begin of its name, that this one is.
+fn own_file<S: Study>(context: &Context<'_, S>, read: &Path) -> Option<PathBuf> {
+    let (begin, name) = (context.file(""), read.file_name()?);
+    let rest = name.to_str()?.strip_prefix(begin.file_name()?.to_str()?)?;
+    let own = Some(begin.with_file_name(name)).filter(|_| rest.starts_with(['-', '.']))?;
+    (file::destination(&own) == file::destination(read)).then_some(own)
 }
 
 fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
@@ -420,6 +443,10 @@ fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) ->
         console: &Terminal { is_quiet: false },
         doubts: Doubts::default(),
     };
+    let mut read = reading::named(&S::parameters(), &context.setup);
+    read.extend(reading::named(&S::options(), &context.options));
+    let json = context.destinations.json.iter().filter(|path| path.as_os_str() != "-");
+    outcome::check_apart(json, &read)?;
     let ended = (verb.run)(&mut context);
     context.say_warnings()?;
     Ok(ended?)

@@ -41,8 +41,7 @@ impl Failure {
         };
         /// Characters; a library's message may quote a whole file.
         const LONGEST: usize = 2_000;
-        // One line, whatever a library put into its own.
-        let mut line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut line = joined(&message);
         if let Some((end, _)) = line.char_indices().nth(LONGEST) {
             line.truncate(end);
             line.push_str("...");
@@ -50,6 +49,12 @@ impl Failure {
         outcome::say(&format!("error: {line}"));
         code
     }
+}
+
+/// One line of a message, whatever a library put into it. Spaces in a line may be those of a file's name.
+fn joined(message: &str) -> String {
+    let lines = message.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ")
 }
 
 impl fmt::Display for Failure {
@@ -148,5 +153,15 @@ impl From<CompareError> for Failure {
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
         Failure::Input(error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_joined_and_names_are_as_they_are() {
+        assert_eq!(joined("writing a  b\t.png: no\n\n   space  "), "writing a  b\t.png: no space");
     }
 }

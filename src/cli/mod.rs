@@ -18,6 +18,7 @@ mod part;
 mod passes;
 mod pool;
 mod processes;
+mod reading;
 mod render;
 mod report;
 mod spelling;
@@ -30,15 +31,19 @@ mod worker;
 
 use std::convert::Infallible;
 use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+pub use self::assemble::{Film, Shards, missing_parts, shards_in_folders};
 pub use self::failure::Failure;
 pub use self::page::{axes_table, options_table};
-pub use self::part::read as read_part;
+pub use self::part::{in_folder as parts_in_folder, read as read_part};
 pub use self::stress::File as StressFile;
+#[cfg(feature = "window")]
+pub use self::view::reordered as view_reordered;
 use crate::measure::study::{Study, Visitor};
 use crate::{gpu, papers};
 
@@ -81,11 +86,18 @@ struct Paper {
     command: fn() -> clap::Command,
     /// Runs one of its verbs.
     run: fn(&ArgMatches) -> Result<(), Failure>,
+    /// Lists the files that its bench reads.
+    read: fn(&ArgMatches) -> Vec<PathBuf>,
 }
 
 impl Paper {
     fn of<S: Study>() -> Paper {
-        Paper { name: S::PAPER, command: declared::command::<S>, run: declared::run::<S> }
+        Paper {
+            name: S::PAPER,
+            command: declared::command::<S>,
+            run: declared::run::<S>,
+            read: declared::read_by_bench::<S>,
+        }
     }
 
     /// Runs the paper with `arguments`, the first of which is the program's name, and gives the exit code.

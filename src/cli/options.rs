@@ -2,7 +2,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
@@ -96,6 +96,11 @@ pub struct MachineArgs {
 }
 
 impl MachineArgs {
+    /// Folder of the shaders that stand in for the built-in ones.
+    pub fn shader_dir(&self) -> Option<&Path> {
+        self.shader_dir.as_deref()
+    }
+
     /// The same on another device.
     pub fn on(&self, device: &str) -> Self {
         MachineArgs { device: Some(device.to_owned()), ..self.clone() }

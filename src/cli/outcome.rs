@@ -1,5 +1,6 @@
 //! Writing what a measurement leaves behind.
 
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -15,7 +16,6 @@ use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Console;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Watch;
-use crate::measure::study::Study;
 use crate::report::record::Record;
 use crate::report::table::Style;
 use crate::report::text::{escaped, one_line};
@@ -89,11 +89,13 @@ pub fn check(output: &OutputArgs) -> Result<(), Failure> {
     check_apart(output.files(), &[])
 }
 
-/// Fails where two of the files that are `written` are one, or one of them is `read`: the one would take the other's place
-/// without a word. Fails as well where one would lie below another, which is a file and holds none.
+/// Fails where two of the files that are `written` are one, or one of them is `read` (see [`reading`](super::reading)):
+/// the one would take the other's place without a word. Fails as well where one would lie below another, which is a
+/// file and holds none.
 pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[PathBuf]) -> Result<(), Failure> {
-    let read: Vec<PathBuf> = read.iter().filter_map(|path| destination(path)).collect();
-    let mut before: Vec<(&PathBuf, PathBuf)> = Vec::new();
+    let read: HashSet<PathBuf> = read.iter().filter_map(|path| destination(path)).collect();
+    // By their places, and by those above these: a film has many thousands.
+    let (mut before, mut above_before) = (HashMap::<PathBuf, &PathBuf>::new(), HashMap::<PathBuf, &PathBuf>::new());
     for path in written {
         let Some(place) = destination(path) else { continue };
         if read.contains(&place) {
@@ -101,17 +103,13 @@ pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[P
                 format!("{}: it is read, and what is written there would replace it; name another", path.display());
             return Err(Failure::Input(message));
         }
-        for (other, other_place) in &before {
-            let (above, below) = match (place.starts_with(other_place), other_place.starts_with(&place)) {
-                (false, false) => continue,
-                (true, true) => {
-                    let message =
-                        format!("{}: two outputs are to be written there; give each a file of its own", path.display());
-                    return Err(Failure::Input(message));
-                }
-                (true, false) => (*other, path),
-                (false, true) => (path, *other),
-            };
+        if before.contains_key(&place) {
+            let message =
+                format!("{}: two outputs are to be written there; give each a file of its own", path.display());
+            return Err(Failure::Input(message));
+        }
+        let is_below = place.ancestors().skip(1).find_map(|above| before.get(above)).map(|other| (*other, path));
+        if let Some((above, below)) = is_below.or_else(|| above_before.get(&place).map(|other| (path, *other))) {
             let message = format!(
                 "{}: one output is to be written there, and another below it, {}; a file has none below it, so name another",
                 above.display(),
@@ -119,14 +117,15 @@ pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[P
             );
             return Err(Failure::Input(message));
         }
-        before.push((path, place));
+        for above in place.ancestors().skip(1) {
+            if above_before.insert(above.to_owned(), path).is_some() {
+                // Those above it are there as well.
+                break;
+            }
+        }
+        before.insert(place, path);
     }
     Ok(())
-}
-
-/// The files that a paper reads, as its parameters name them.
-pub fn read_by<S: Study>(study: &S) -> Vec<PathBuf> {
-    S::parameters().iter().flat_map(|parameter| parameter.files(study)).collect()
 }
 
 /// Fails for a file that cannot be written, and for `-`, which only `--json` knows.

@@ -16,8 +16,8 @@ use crate::measure::Variant;
 use crate::measure::bench::inputs;
 use crate::measure::machine::Machine;
 use crate::measure::study::Study;
-use crate::report::environment;
 use crate::report::record::InputFile;
+use crate::report::{environment, json as reader};
 
 /// The value of [`Part::schema`].
 pub const SCHEMA: &str = "fumarole.part/1";
@@ -194,7 +194,7 @@ pub fn read(path: &Path) -> Result<Part, Failure> {
     let failed = |reason: String| Failure::Input(format!("reading the part {}: {reason}", path.display()));
     // Far more than any part has.
     let text = file::read_text(path, 1 << 24).map_err(|e| failed(e.to_string()))?;
-    let part: Part = serde_json::from_str(&text).map_err(|e| failed(e.to_string()))?;
+    let part: Part = serde_json::from_str(&text).map_err(|e| failed(reader::plain(&e)))?;
     if part.schema != SCHEMA {
         return Err(failed(format!("its schema is {}, not {SCHEMA}", part.schema)));
     }

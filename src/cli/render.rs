@@ -1,8 +1,9 @@
 //! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use clap::Args;
@@ -13,6 +14,7 @@ use super::film;
 use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
 use super::part::{self, Part, parse_rows};
+use super::reading;
 use super::watch::{ProgressLines, interrupted, patiently, progress_bar};
 use crate::gpu;
 use crate::image::{self, Rgba8, y4m};
@@ -130,9 +132,6 @@ pub fn draw<S: Study>(
     }
 
     let study = resolve()?;
-    let picture = has_pictures.then(|| picture_path(frames.first));
-    let dumps = arguments.dump.iter().map(|dump| &dump.file);
-    outcome::check_apart(dumps.chain(&picture).chain(&arguments.film), &outcome::read_by(&study))?;
     let (whole, height) = (frames.first..frames.end, study.identity().height);
     let (numbers, rows) = arguments.share(height)?;
     if numbers.is_empty() || rows.is_empty() {
@@ -147,6 +146,17 @@ pub fn draw<S: Study>(
         true => part::of_rows(&picture_path(number), [rows.start, rows.end]),
         false => picture_path(number),
     };
+    let read = reading::by_study(&study, &arguments.machine);
+    // Of all frames those whose pictures have names that are read.
+    let is_read = |number: &u32| read.iter().any(|path| path.file_name() == picture_path(*number).file_name());
+    let of_frames = read.iter().filter_map(|path| number_in_name(path)).filter(|number| whole.contains(number));
+    let drawn: BTreeSet<u32> = [frames.first].into_iter().chain(of_frames.filter(is_read)).collect();
+    let mut pictures: Vec<PathBuf> = drawn.into_iter().filter(|_| has_pictures).map(picture_path).collect();
+    if arguments.shard.is_some() || arguments.rows.is_some() {
+        pictures.extend(pictures.clone().iter().map(|picture| part::beside(picture)));
+    }
+    let dumps = arguments.dump.iter().map(|dump| &dump.file);
+    outcome::check_apart(dumps.chain(&pictures).chain(&arguments.film), &read)?;
     let open = || Machine::open(&arguments.machine.resolve(0), S::NEEDS);
     let loaded = patiently(arguments.quiet, "loading the scene", || load_for(&study, &[variant], open))?;
     let (Loaded { scene, .. }, mut machine) = loaded;
@@ -240,6 +250,17 @@ pub fn draw<S: Study>(
     }
     machine.check_validation()?;
     Ok(())
+}
+
+/// The last number in a file's name, as that of a frame stands there.
+fn number_in_name(path: &Path) -> Option<u32> {
+    let name = path.file_name()?.to_str()?;
+    let is_no_digit = |letter: char| !letter.is_ascii_digit();
+    // Behind it come rows, and the ending.
+    let name = name
+        .split_once(".rows-")
+        .map_or_else(|| name.rsplit_once('.').map_or(name, |(stem, _)| stem), |(stem, _)| stem);
+    name.rsplit(is_no_digit).next()?.parse().ok()
 }
 
 impl PictureArgs {

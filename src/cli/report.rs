@@ -60,6 +60,7 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
         return Err(Failure::Input("report: name records or a folder, as in: fumarole report fumarole-out".into()));
     }
     file::check_writable(&arguments.output)?;
+    outcome::check_apart([&arguments.output], &arguments.documents())?;
     let mut contents = Contents { title: "fumarole".to_owned(), ..Contents::default() };
     for source in &arguments.sources {
         if source.is_dir() {
@@ -88,7 +89,26 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
     if [contents.records.len(), contents.tables.len(), contents.plots.len(), contents.verdicts.len()] == [0; 4] {
         return Err(Failure::Input("report: no record, no table and no plot was found; write one with --json".into()));
     }
+    let of_source = |source: &Source| {
+        let runs = source.pictures.iter().map(|shown| &source.record.runs[shown.run]);
+        runs.filter_map(|run| picture_files(Path::new(&source.name), run)).flatten().collect::<Vec<_>>()
+    };
+    let pictures: Vec<PathBuf> = contents.records.iter().flat_map(of_source).collect();
+    outcome::check_apart([&arguments.output], &pictures)?;
     write(&contents, &arguments.output, arguments.quiet)
+}
+
+impl ReportArgs {
+    /// The documents and plots that are read; of a folder that cannot be listed none.
+    fn documents(&self) -> Vec<PathBuf> {
+        let is_read = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json" || ending == "svg");
+        let of_source = |source: &PathBuf| match source.is_dir() {
+            true => outcome::listed(source).unwrap_or_default().into_iter().filter(is_read).collect(),
+            false => vec![source.clone()],
+        };
+        let sides = self.a.iter().chain(&self.b).flat_map(|side| side.files().to_vec());
+        self.sources.iter().flat_map(of_source).chain(sides).collect()
+    }
 }
 
 /// A record that was just measured, as a page.
@@ -372,14 +392,20 @@ fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn
     drawn
 }
 
-/// A run's picture, if it is still the one that the record names: where it was written, or beside the record.
+/// Places of a run's picture: where it was written, and beside the record.
+fn picture_files(record: &Path, run: &Run) -> Option<[PathBuf; 2]> {
+    let written = PathBuf::from(&run.image.as_ref()?.path);
+    let beside = record.with_file_name(written.file_name()?);
+    Some([written, beside])
+}
+
+/// A run's picture, if it is still the one that the record names, in one of its places.
 fn picture(record: &Path, run: &Run) -> Option<Result<(Vec<u8>, Rgba8), String>> {
     let named = run.image.as_ref()?;
-    let written = PathBuf::from(&named.path);
-    let beside = record.with_file_name(written.file_name()?);
+    let files = picture_files(record, run)?;
     let is_it = |path: &&PathBuf| content::file_sha256(path).is_ok_and(|found| found == named.sha256);
     let is_small = |path: &&PathBuf| fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= MAX_PICTURE_BYTES);
-    let found = [&written, &beside].into_iter().filter(is_small).find(is_it);
+    let found = files.iter().filter(is_small).find(is_it);
     let Some(path) = found else {
         return Some(Err(format!("{}: the picture of the record is not there, or has changed since", named.path)));
     };

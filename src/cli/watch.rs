@@ -17,8 +17,9 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Called at an interruption in place of setting the flag.
 static QUIT: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
-/// Keeps the signal HUP from a program whose caller ignores it, as `nohup` does: it goes on when its terminal is closed. To
-/// be called first in `main`: threads and programs that are started later inherit it. Linux alone tells what is ignored.
+/// Keeps the signal HUP from a program whose caller ignores it, as `nohup` does: it goes on when its terminal is
+/// closed. Keeps XFSZ from any: a file that grows beyond the caller's limit is an error like others. To be called first
+/// in `main`: threads that are started later inherit it. Linux alone tells what is ignored.
 #[cfg(unix)]
 pub fn keep_ignored() {
     use nix::sys::signal::{SigSet, Signal};
@@ -26,15 +27,17 @@ pub fn keep_ignored() {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or_default();
+    let mut held_back = SigSet::empty();
+    // One that is held back does not end the program.
+    held_back.add(Signal::SIGXFSZ);
     if ignored & hang_up != 0 {
-        let mut held_back = SigSet::empty();
+        // The handler takes all its signals, so this one is held back before it.
         held_back.add(Signal::SIGHUP);
-        // The handler takes all its signals, so this one is held back before it. Without that it ends the program.
-        let _ = held_back.thread_block();
     }
+    let _ = held_back.thread_block();
 }
 
-/// Only systems with that signal need it.
+/// Only systems with those signals need it.
 #[cfg(not(unix))]
 pub fn keep_ignored() {}
 

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
+#[cfg(unix)]
+mod fifo;
 mod input;
 mod output;
 mod temporary;

@@ -10,6 +10,8 @@ use std::path::{Component, Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+#[cfg(unix)]
+use super::fifo;
 use super::temporary;
 
 /// Failures of writing; every message names the file.
@@ -25,6 +27,11 @@ pub enum OutputError {
     #[error("cannot write {}: it is a directory; name a file in it", .path.display())]
     IsDirectory {
         /// Destination, which is a directory.
+        path: PathBuf,
+    },
+    #[error("cannot write {}: it is a pipe that no one reads; start its reader first, or name a file", .path.display())]
+    Unread {
+        /// Destination, a pipe.
         path: PathBuf,
     },
     #[error("cannot write {}: the file is read-only; make it writable or name another", .path.display())]
@@ -93,7 +100,8 @@ pub fn write_with(
     let failed = |source| OutputError::Write { path: path.to_owned(), source };
     match Destination::find(path)? {
         Destination::Stream => {
-            let mut stream = File::options().write(true).open(path).map_err(failed)?;
+            let stream = open_stream(path).map_err(failed)?;
+            let mut stream = stream.ok_or_else(|| OutputError::Unread { path: path.to_owned() })?;
             buffered(&mut stream, fill).map_err(failed)
         }
         Destination::File(target) => {
@@ -105,16 +113,17 @@ pub fn write_with(
 
 /// Finds out, before a long run, whether [`write()`] to `path` can succeed: makes a temporary file in the directory, or in the one
 /// that it would be made in, and removes it again; what killed processes left there is removed too. An older file at `path` is not
-/// touched.
+/// touched. A pipe must have a reader.
 ///
 /// # Errors
 /// As [`write()`].
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
     let failed = |source| OutputError::Write { path: path.to_owned(), source };
     match Destination::find(path)? {
-        // Its reader would take the end of this for the end of what is written later.
-        Destination::Stream if is_fifo(path) => Ok(()),
-        Destination::Stream => File::options().write(true).open(path).map(drop).map_err(failed),
+        Destination::Stream => match has_reader(path).map_err(failed)? {
+            true => Ok(()),
+            false => Err(OutputError::Unread { path: path.to_owned() }),
+        },
         Destination::File(target) => {
             let directory = parent(&target);
             let uncreated = |source| OutputError::CreateDirectory { path: directory.clone(), source };
@@ -206,16 +215,22 @@ impl Destination {
     }
 }
 
-/// True of a pipe that has a name.
-#[cfg(unix)]
-fn is_fifo(path: &Path) -> bool {
-    use std::os::unix::fs::FileTypeExt;
-    fs::metadata(path).is_ok_and(|metadata| metadata.file_type().is_fifo())
+/// A device or a pipe, to be written; `None` for a pipe without a reader, which the system would wait for.
+fn open_stream(path: &Path) -> io::Result<Option<File>> {
+    #[cfg(unix)]
+    if fifo::is_fifo(path) {
+        return fifo::open(path);
+    }
+    File::options().write(true).open(path).map(Some)
 }
 
-#[cfg(not(unix))]
-fn is_fifo(_: &Path) -> bool {
-    false
+/// False for a pipe that no one reads; one that is read stays open until it is written.
+fn has_reader(path: &Path) -> io::Result<bool> {
+    #[cfg(unix)]
+    if fifo::is_fifo(path) {
+        return fifo::hold(path);
+    }
+    File::options().write(true).open(path).map(|_| true)
 }
 
 /// The end of a chain of symbolic links, of which nothing need exist.

@@ -36,12 +36,13 @@ impl ShaderLibrary {
     /// # Errors
     /// [`Error::Shader`] with the original file and line when a replacement does not compile.
     pub fn new(device: &Arc<Device>, compiler: Compiler, replacements: Option<&Path>) -> Result<Self, Error> {
-        let replaced = match replacements {
-            None => Vec::new(),
-            Some(dir) => replace(dir).map_err(|problem| Error::Shader { name: dir.display().to_string(), problem })?,
-        };
-        let folder = replacements.map_or_else(String::new, |dir| dir.display().to_string());
-        Ok(ShaderLibrary { device: device.clone(), compiler, replaced, folder, pipelines: PipelineStore::default() })
+        Ok(ShaderLibrary::with(device, compiler, Replacements::read(replacements)?))
+    }
+
+    /// The embedded shaders, and those that were compiled before the device was opened.
+    pub fn with(device: &Arc<Device>, compiler: Compiler, replacements: Replacements) -> Self {
+        let Replacements { shaders: replaced, folder } = replacements;
+        ShaderLibrary { device: device.clone(), compiler, replaced, folder, pipelines: PipelineStore::default() }
     }
 
     /// Names the shader folder where a pass that could not be built of the built-in shaders' counterparts may be its
@@ -145,6 +146,27 @@ fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
         GEOMETRY => !physical.has(Feature::GeometryShader),
         other => !ALWAYS.contains(&other),
     })
+}
+
+/// Shaders of a folder, compiled.
+pub struct Replacements {
+    shaders: Vec<shader_build::CompiledShader>,
+    folder: String,
+}
+
+impl Replacements {
+    /// Compiles the folder, if one is given; it needs no device.
+    ///
+    /// # Errors
+    /// As [`ShaderLibrary::new`].
+    pub fn read(folder: Option<&Path>) -> Result<Self, Error> {
+        let Some(dir) = folder else { return Ok(Replacements { shaders: Vec::new(), folder: String::new() }) };
+        let folder = dir.display().to_string();
+        match replace(dir) {
+            Ok(shaders) => Ok(Replacements { shaders, folder }),
+            Err(problem) => Err(Error::Shader { name: folder, problem }),
+        }
+    }
 }
 
 /// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.

@@ -15,7 +15,7 @@ use super::shard::Shard;
 use super::shared_sweep::Assembled;
 use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Row, Swept};
-use crate::file::{check_writable, write};
+use crate::file::{check_writable, destination, write};
 use crate::gpu::Instance;
 use crate::image::{self, Raster, Rgba8};
 use crate::report::plot::PlotError;
@@ -197,11 +197,9 @@ impl<S: Study> Context<'_, S> {
             return Err(Error::Input(format!("`{name}`: {reason}")));
         }
         if (self.shard.is_some() || self.assembled.is_some()) && !S::SHARED.contains(&experiment.name) {
-            let known = S::SHARED.join(", ");
+            let (name, paper, known) = (experiment.name, S::PAPER, S::SHARED.join(", "));
             let option = if self.assembled.is_some() { "assembled" } else { "shard" };
-            let message =
-                format!("`{option}`: {} is not shared out; of {} these are: {known}", experiment.name, S::PAPER);
-            return Err(Error::Input(message));
+            return Err(Error::Input(format!("`{option}`: {name} is not shared out; of {paper} these are: {known}")));
         }
         let unheeded =
             S::options().into_iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
@@ -278,7 +276,8 @@ impl<S: Study> Context<'_, S> {
 
     /// Writes the rows of a sweep that has begun as CSV, where the finished one will be: whatever ends it, they stay.
     fn keep(&self, machine: &Machine, rows: &[Row], points: usize) -> Result<(), Error> {
-        if points < 2 {
+        // The reader of a pipe would take them for all that there will be.
+        if points < 2 || destination(&self.csv_file()).is_none() {
             return Ok(());
         }
         let runs = rows.iter().map(|row| row.run.clone()).collect();
@@ -323,9 +322,8 @@ impl<S: Study> Context<'_, S> {
         Ok(())
     }
 
-    /// Publishes runs: the record, its rows, the plots, each with its file's suffix, and the tables as files; on standard
-    /// output `text` and the tables, or the record. The runs' warnings are said at the end. Each is written even when another
-    /// cannot be.
+    /// Publishes runs: record, rows, plots, each with its file's suffix, and tables as files; on standard output `text`
+    /// and the tables, or the record. Warnings are said at the end. Each is written even when another cannot be.
     ///
     /// # Errors
     /// [`Error::Output`], the first.
@@ -445,7 +443,8 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// [`Error::Output`].
     pub fn keep_table(&self, table: &ResultTable) -> Result<(), Error> {
-        Ok(write(&self.csv_file(), table.csv().as_bytes())?)
+        let is_file = destination(&self.csv_file()).is_some();
+        if is_file { Ok(write(&self.csv_file(), table.csv().as_bytes())?) } else { Ok(()) }
     }
 
     /// Publishes a table without times and its plot.

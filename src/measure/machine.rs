@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::error::Error as InputError;
 use crate::content;
 use crate::gpu::physical::{DeviceType, choose};
-use crate::gpu::{Compiler, Device, Error, Feature, Instance, PhysicalDevice, Recorder, ShaderLibrary};
+use crate::gpu::{Compiler, Device, Error, Feature, Instance, PhysicalDevice, Recorder, Replacements, ShaderLibrary};
 use crate::report::environment;
 use crate::report::record::{self, DeviceKind, Environment, Validation};
 
@@ -84,13 +84,15 @@ impl Machine {
     /// # Errors
     /// Any error of the Vulkan layer, [`Error::Shader`] for a shader directory that does not compile.
     pub fn open(options: &MachineOptions, needed: &[Feature]) -> Result<Self, Error> {
+        // A folder that is refused needs no device.
+        let replacements = Replacements::read(options.shader_dir.as_deref())?;
         let instance = Instance::new(options.validate)?;
         let physical = choose(PhysicalDevice::enumerate(&instance)?, options.device.as_deref(), needed)?;
         let physical = if options.is_profiled { physical.profiled() } else { physical };
         let device = Device::open(&instance, physical)?;
         Ok(Machine {
             recorder: Recorder::new(&device)?,
-            shaders: ShaderLibrary::new(&device, options.compiler, options.shader_dir.as_deref())?,
+            shaders: ShaderLibrary::with(&device, options.compiler, replacements),
             device,
             opened: environment::date(),
             process: options.process,

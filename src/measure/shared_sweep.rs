@@ -17,7 +17,7 @@ use crate::content;
 use crate::report::record::{Environment, Run, Share};
 use crate::report::{Record, environment, json as reader};
 
-/// What several processes have measured, put together by `fumarole assemble`.
+/// Measurements of several processes, put together by `fumarole assemble`.
 pub struct Assembled {
     path: PathBuf,
     environment: Environment,

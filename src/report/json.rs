@@ -32,7 +32,7 @@ pub enum ReadError {
         /// Line at which it ends, from 1.
         line: usize,
     },
-    #[error("cannot read the record {}: no JSON: {source}; name a file written by --json", .path.display())]
+    #[error("cannot read the record {}: no JSON: {}; name a file written by --json", .path.display(), plain(.source))]
     NotJson {
         /// File that was read.
         path: PathBuf,
@@ -40,16 +40,18 @@ pub enum ReadError {
         source: serde_json::Error,
     },
     #[error(
-        "cannot read the record {}: its schema is {found}, not \"{SCHEMA}\"; name a file written by --json of this version",
-        .path.display()
+        "cannot read the record {}: {}; name a file written by --json of this version",
+        .path.display(), other_schema(.found)
     )]
     WrongSchema {
         /// File that was read.
         path: PathBuf,
-        /// Its schema in quotes, or `absent` or `no text`.
+        /// Its schema in quotes, or `absent`, `no text` or `no object`.
         found: String,
     },
-    #[error("cannot read the record {}: field {field}: {source}; write it again with --json", .path.display())]
+    #[error(
+        "cannot read the record {}: field {field}: {}; write it again with --json", .path.display(), plain(.source)
+    )]
     WrongField {
         /// File that was read.
         path: PathBuf,
@@ -58,6 +60,24 @@ pub enum ReadError {
         /// The parser's error on the field.
         source: serde_json::Error,
     },
+}
+
+/// Found in place of a schema where the document cannot have one.
+const NO_OBJECT: &str = "no object";
+
+/// A schema that is another one, for a message; what a file has in its place may be as long as the file.
+fn other_schema(found: &str) -> String {
+    const LONGEST: usize = 60;
+    if found == NO_OBJECT {
+        return "it is no such document".to_owned();
+    }
+    let (end, dots) = found.char_indices().nth(LONGEST).map_or((found.len(), ""), |(end, _)| (end, "..."));
+    format!("its schema is {}{dots}, not \"{SCHEMA}\"", &found[..end])
+}
+
+/// The parser's message with its names in quotes: names in backticks are options of ours.
+pub fn plain(error: &serde_json::Error) -> String {
+    error.to_string().replace('`', "\"")
 }
 
 /// Any document of this crate as JSON: objects on indented lines, lists of plain values on one line, a final newline.
@@ -105,7 +125,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
         if source.is_eof() {
             ReadError::Truncated { path: owned(), line: source.line() }
         } else if source.is_data() {
-            ReadError::WrongSchema { path: owned(), found: "no text".to_owned() }
+            let found = if text.trim_start().starts_with('{') { "no text" } else { NO_OBJECT };
+            ReadError::WrongSchema { path: owned(), found: found.to_owned() }
         } else {
             ReadError::NotJson { path: owned(), source }
         }
@@ -239,6 +260,14 @@ mod tests {
             let error = error_of(foreign);
             assert!(matches!(error, ReadError::WrongSchema { .. }), "{error}");
         }
+        let error = error_of("[[[[]]]]").to_string();
+        assert!(error.contains("it is no such document") && !error.contains("schema"), "{error}");
+        assert!(error_of("{\"schema\": 3}").to_string().contains("its schema is no text"));
+        let error = error_of(&format!("{{\"schema\": \"{}\"}}", "a ".repeat(1_000_000))).to_string();
+        assert!(error.len() < 300 && error.contains("a a..."), "{error}");
+        let error = error_of(&format!("{{\"schema\": \"{SCHEMA}\"}}")).to_string();
+        assert!(error.contains("missing field \"") && !error.contains('`'), "{error}");
+
         assert!(matches!(error_of(&format!("{text}{text}")), ReadError::NotJson { .. }));
 
         let mut value = serde_json::to_value(example::full()).unwrap();

@@ -134,6 +134,8 @@ impl Fault {
             .collect::<Vec<_>>()
             .join("; ");
         reason.retain(|character| !character.is_control());
+        // Names in backticks are options of ours.
+        reason = reason.replace('`', "\"");
         if let Some((end, _)) = reason.char_indices().nth(LONGEST) {
             reason.truncate(end);
             reason.push_str("...");

@@ -13,8 +13,9 @@ use crate::{content, file};
 /// Endings of the files that a raster may be read with, in small or in large letters.
 const BESIDE_A_RASTER: [&str; 5] = ["hdr", "prj", "bil", "dem", "bsq"];
 
-/// SHA-256 of a file, or of all of a folder, in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
-/// projection of a raster, parts of a mosaic, world file of a picture, samples of a volume), that of all their digests in order.
+/// SHA-256 of a file, or of all of a folder, in lower-case hexadecimal; where others are read with it (buffers of a
+/// glTF document, header and projection of a raster, parts of a mosaic, world file of a picture, samples of a volume,
+/// texture of a table of materials), that of all their digests in order.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -29,6 +30,16 @@ pub fn source_sha256(path: &Path) -> io::Result<String> {
     }
     let digests = companions.iter().map(|companion| content::file_sha256(companion)).collect::<io::Result<Vec<_>>>()?;
     Ok(content::sha256(format!("{own}{}", digests.concat()).as_bytes()))
+}
+
+/// The files that are read of a source: of a folder its SRTM tiles, of a file itself and those that [`source_sha256`]
+/// reads with it.
+pub fn read_files(path: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(path) else {
+        return std::iter::once(path.to_owned()).chain(companions(path)).collect();
+    };
+    let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    files.filter(|file| file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("hgt"))).collect()
 }
 
 /// The files of a source, their sizes and when they were last written to: another where one of them was changed.
@@ -46,7 +57,7 @@ impl SourceState {
             files.sort();
             files
         } else {
-            [path.to_owned()].into_iter().chain(companions(path)).collect()
+            read_files(path)
         };
         let state = |path: PathBuf| {
             let metadata = std::fs::metadata(&path)?;
@@ -55,6 +66,18 @@ impl SourceState {
         files.into_iter().map(state).collect::<io::Result<_>>().map(SourceState)
     }
 }
+
+/// The other file that a table of materials names; the rest of it is passed over.
+#[derive(Deserialize)]
+struct MaterialTable {
+    texture: Option<String>,
+}
+
+/// Largest file that may be a table of materials, bytes: no larger one is taken for one.
+const MOST_TABLE_BYTES: u64 = 96 << 10;
+
+/// Largest document whose buffers are looked for, bytes.
+const MOST_GLTF_BYTES: u64 = 1 << 30;
 
 /// Other files that a glTF document names; the rest of it is passed over.
 #[derive(Deserialize)]
@@ -68,17 +91,25 @@ struct GltfBuffer {
     uri: Option<String>,
 }
 
+/// The other files that are read with a file, as far as they are there.
 fn companions(path: &Path) -> Vec<PathBuf> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     if ending == "gltf" {
         let document: Option<GltfBuffers> =
-            std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+            file::read(path, MOST_GLTF_BYTES).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
         let uris = document.into_iter().flat_map(|document| document.buffers).filter_map(|buffer| buffer.uri);
         let uris = uris.filter(|uri| !uri.starts_with("data:"));
         let folder = path.parent().unwrap_or(Path::new(""));
         let named = uris.filter_map(|uri| percent_decoded(&uri));
         let files = named.filter_map(|name| file::below(folder, Path::new(&name)).ok());
         return files.filter(|file| file.is_file()).collect();
+    }
+    if ending == "toml" {
+        let text = file::read_text(path, MOST_TABLE_BYTES).unwrap_or_default();
+        let texture = toml::from_str::<MaterialTable>(&text).ok().and_then(|table| table.texture);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let file = texture.and_then(|name| file::below(folder, Path::new(&name)).ok());
+        return file.filter(|file| file.is_file()).into_iter().collect();
     }
     if ending == "png" {
         let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
@@ -143,6 +174,10 @@ mod tests {
         assert_eq!(alone, content::sha256(b"grid"));
         write("f.prj", "projection");
         assert_ne!(source_sha256(&grid).unwrap(), alone);
+        let table = write("g.toml", "texture = \"g.png\"\n[[material]]\nkind = \"wood\"\n");
+        let alone = source_sha256(&table).unwrap();
+        write("g.png", "texture");
+        assert_ne!(source_sha256(&table).unwrap(), alone);
         let volume = write("e.nhdr", "NRRD0004\ndata file: e.raw\n");
         write("e.raw", "one");
         let first = source_sha256(&volume).unwrap();
@@ -182,6 +217,23 @@ mod tests {
             assert!(now.0 != before.0 && now.1 != before.1, "{name}");
             before = now;
         }
+    }
+
+    #[test]
+    fn of_a_folder_the_tiles_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["N00E000.hgt", "N00E001.HGT", "notes.txt", "a.bil", "a.hdr"] {
+            std::fs::write(folder.path().join(name), "x").unwrap();
+        }
+        let names = |path: &Path| {
+            let of = |file: PathBuf| file.file_name().unwrap().to_string_lossy().into_owned();
+            let mut names: Vec<String> = read_files(path).into_iter().map(of).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(names(folder.path()), ["N00E000.hgt", "N00E001.HGT"]);
+        assert_eq!(names(&folder.path().join("a.bil")), ["a.bil", "a.hdr"]);
+        assert_eq!(names(&folder.path().join("nowhere")), ["nowhere"]);
     }
 
     #[test]

@@ -88,7 +88,8 @@ pub(super) fn find(folder: &Path, key: &Key) -> Option<Mesh> {
     }
 }
 
-fn read(file: &mut File) -> Option<Mesh> {
+/// Reads an entry; none where it is damaged.
+pub fn read(file: &mut File) -> Option<Mesh> {
     let size_bytes = file.metadata().ok()?.len();
     let mut start = Start::zeroed();
     file.read_exact(bytemuck::bytes_of_mut(&mut start)).ok()?;

@@ -35,13 +35,14 @@ pub use camera::Camera;
 pub use divide::divided;
 pub use error::{Asset, Error, Fault, Place};
 pub use height_map::{
-    Coordinates, Geographic, HeightMap, HeightMapSource, RowSource, Rows, Samples, Suspect, Voids, volcano,
+    Coordinates, Geographic, HeightMap, HeightMapSource, RowSource, Rows, Samples, Shown, Suspect, Voids, shown,
+    volcano,
 };
-pub use identity::{SourceState, source_sha256};
+pub use identity::{SourceState, read_files, source_sha256};
 pub use light::Light;
 pub use loading::MeshOptions;
 pub use mesh::Mesh;
-pub use mesh_cache::folder as mesh_cache_folder;
+pub use mesh_cache::{folder as mesh_cache_folder, read as read_kept_mesh};
 pub use source::{MeshSource, promised_triangles};
 pub use tags::Tags;
 pub use voxels::{VoxelGrid, load as load_voxels};

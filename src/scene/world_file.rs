@@ -1,11 +1,11 @@
 //! World files: six lines beside a picture that say where it lies.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use super::error::{Asset, Fault, Place};
+use super::height_map::{read_text, shown};
 use super::{Coordinates, Error, file};
 
 /// Endings of the world file of a PNG, in the order in which they are looked for.
@@ -19,9 +19,7 @@ pub fn beside(picture: &Path) -> Result<Option<(PathBuf, Coordinates)>, Error> {
     for ending in ENDINGS {
         let Some(path) = file::beside(picture, ending)? else { continue };
         let (input, _) = file::open(&path, Asset::WorldFile)?;
-        let mut bytes = Vec::new();
-        input.take(MAX_BYTES).read_to_end(&mut bytes).map_err(|error| file::failed(&path, Asset::WorldFile, error))?;
-        return match parse(&String::from_utf8_lossy(&bytes)) {
+        return match parse(&read_text(input, &path)?) {
             Ok(coordinates) => Ok(Some((path, coordinates))),
             Err(fault) => Err(Error::Malformed { path, asset: Asset::WorldFile, fault }),
         };
@@ -29,8 +27,8 @@ pub fn beside(picture: &Path) -> Result<Option<(PathBuf, Coordinates)>, Error> {
     Ok(None)
 }
 
-/// Six numbers are a few hundred characters.
-const MAX_BYTES: u64 = 1 << 16;
+/// Least and largest texels, in degrees or in the units of a projection: the least is 1 millionth of a metre in degrees.
+const STEPS: std::ops::RangeInclusive<f64> = 1e-11..=1e6;
 
 /// The lines are the change of x and y from a column to the next (A, D), from a row to the next (B, E), and the place of
 /// the first texel's middle (C, F).
@@ -52,12 +50,18 @@ fn parse(text: &str) -> Result<Coordinates, Fault> {
         return Err(whole("it turns the picture; write one with north up with gdalwarp".to_owned()));
     }
     if a <= 0.0 || e >= 0.0 {
+        let [east, north, right_east, right_north] = [a, e, a.abs(), -e.abs()].map(shown);
         let reason = format!(
-            "its steps are {a:?} east and {e:?} north; a picture with north up has {:?} and {:?}",
-            a.abs(),
-            -e.abs()
+            "its steps are {east} east and {north} north; a picture with north up has {right_east} and {right_north}"
         );
         return Err(whole(reason));
+    }
+    for (line, step) in [(1, a), (4, e)] {
+        if !STEPS.contains(&step.abs()) {
+            let (least, most) = (shown(*STEPS.start()), shown(*STEPS.end()));
+            let reason = format!("its step is {}, and the sides of texels are {least} to {most}", shown(step));
+            return Err(Fault::new(Place::Line(line), reason));
+        }
     }
     Ok(Coordinates { north_west: DVec2::new(c, f), step: DVec2::new(a, -e) })
 }
@@ -77,11 +81,14 @@ mod tests {
             ("1 0 0 x 2 3", "line 4: \"x\""),
             ("1 0 0 -1 inf 3", "line 5: \"inf\""),
             ("1 0.5 0.5 -1 2 3", "gdalwarp"),
-            ("1 0 0 1 2 3", "north up has 1.0 and -1.0"),
-            ("0 0 0 -1 2 3", "steps are 0.0 east"),
+            ("1 0 0 1 2 3", "north up has 1 and -1"),
+            ("0 0 0 -1 2 3", "steps are 0 east"),
+            ("1e300 0 0 1e300 2 3", "are 1e300 east and 1e300 north"),
+            ("1e-300 0 0 -45 2 3", "line 1: its step is 1e-300, and the sides of texels are 1e-11 to 1000000"),
+            ("45 0 0 -1e300 2 3", "line 4: its step is -1e300, and the sides"),
         ] {
             let fault = parse(text).unwrap_err().to_string();
-            assert!(fault.contains(expected), "{text}: {fault}");
+            assert!(fault.contains(expected) && fault.len() < 120, "{text}: {fault}");
         }
     }
 
@@ -90,7 +97,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let picture = folder.path().join("land.png");
         assert_eq!(beside(&picture).unwrap(), None);
-        std::fs::write(folder.path().join("land.wld"), "1 0 0 -1 2 3").unwrap();
+        // Some editors put a mark of UTF-8 before a text.
+        std::fs::write(folder.path().join("land.wld"), "\u{feff}1 0 0 -1 2 3").unwrap();
         assert!(beside(&picture).unwrap().unwrap().0.ends_with("land.wld"));
         std::fs::write(folder.path().join("land.pgw"), "1 0").unwrap();
         let error = beside(&picture).unwrap_err().to_string();

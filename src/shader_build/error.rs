@@ -5,7 +5,7 @@ use super::Compiler;
 /// Why a shader could not be read, compiled, reflected or accepted. Every message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    #[error("reading {}: {source}; check that the path exists and is readable", path.display())]
+    #[error("reading {}: {source}; name a shader folder whose files can be read", path.display())]
     Read {
         /// File or folder that was to be read.
         path: PathBuf,
@@ -59,6 +59,33 @@ pub enum Error {
         /// Their paths under the shader folder.
         files: [String; 2],
     },
+    #[error(
+        "reading the shader folder {}: its shaders have {bytes} bytes or more after their includes, beyond the limit \
+         of {limit} for files of that size; take out variants",
+        path.display()
+    )]
+    TooMuch {
+        /// Folder of the shaders.
+        path: PathBuf,
+        /// Bytes up to the shader that is too much.
+        bytes: u64,
+        /// Most bytes.
+        limit: u64,
+    },
+    #[error("reading the shader folder {}: it has more than {limit} {of}; take some out", path.display())]
+    TooMany {
+        /// Folder of the shaders.
+        path: PathBuf,
+        /// Things of which there are too many.
+        of: &'static str,
+        /// Most of them.
+        limit: usize,
+    },
+    #[error("reading shaders: {} is a link to a folder, not followed; put the folder itself there", path.display())]
+    LinkedFolder {
+        /// The link.
+        path: PathBuf,
+    },
     #[error("NAGA_EXCEPTIONS lists `{shader}`, {problem}; remove the entry")]
     StaleException {
         /// Name of the shader in the table.
@@ -75,7 +102,7 @@ pub enum Error {
     },
 }
 
-/// A fault in a preprocessor line that the includes depend on.
+/// A fault in a preprocessor line that the includes depend on, or a bound that a line is the first to break.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum DirectiveProblem {
     #[error("expected `#include \"path/from/the/shader/folder.glsl\"`")]
@@ -86,17 +113,21 @@ pub enum DirectiveProblem {
     IncludeCycle(String),
     #[error("more than 64 files include each other; include what they need at one place")]
     IncludeDepth,
+    #[error("the shader includes more than 511 files; put some of them together")]
+    IncludeCount,
     #[error("`#include` inside `#if`; move it out, a file is included once whatever the condition")]
     IncludeConditional,
     #[error(
         "expected `#pragma variants NAME=value,value NAME=value,value`: names in capitals, values in small letters and digits, \
-         none twice, at most 256 combinations"
+         none twice, at most 16 names, 64 letters in each and 256 combinations"
     )]
     VariantsSyntax,
     #[error("`#pragma variants` stands once, in the shader's own file and outside `#if`; move it there")]
     VariantsPlace,
     #[error("`#line` is not supported; remove it, lines are mapped to their files already")]
     Line,
+    #[error("the shader has more than 524288 bytes after its includes; make it shorter")]
+    TextLength,
 }
 
 /// A binary whose interface cannot be read.

@@ -1,7 +1,7 @@
 //! Includes, resolved before either compiler sees the text, and the way back from a line of that text to its file.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{DirectiveProblem, Error};
@@ -16,17 +16,30 @@ pub struct Source {
     definitions: Vec<Definition>,
     files: Vec<PathBuf>,
     /// For each line of `text`: index into `files`, line in that file from 1.
-    origins: Vec<(usize, usize)>,
+    origins: Vec<(u32, u32)>,
 }
 
 impl Source {
     /// Reads the shaders that `file` (a path below `root`) makes, one for each of its variants, with everything they
-    /// include; with each its name.
+    /// include; with each its name. All are in memory at once.
     ///
     /// # Errors
     /// A file that cannot be read, a first line other than `#version 450`, an include that is misspelt, missing, cyclic
-    /// or conditional, and variants that are misspelt or misplaced.
+    /// or conditional, variants that are misspelt or misplaced, and a text that is too long.
     pub fn read_variants(root: &Path, file: &str) -> Result<Vec<(String, Source)>, Error> {
+        let (variants, _) = Source::list_variants(root, file)?;
+        let read = |definitions: Vec<Definition>| {
+            let name = variants::shader_name(file, &definitions);
+            Ok((name, Source::read(root, file, definitions)?))
+        };
+        variants.into_iter().map(read).collect()
+    }
+
+    /// The variants that `file` (a path below `root`) makes, by their definitions, and the bytes that it has.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and variants that are misspelt.
+    pub(super) fn list_variants(root: &Path, file: &str) -> Result<(Vec<Vec<Definition>>, usize), Error> {
         let path = root.join(file);
         let text = read_text(root, &path)?;
         let pragma = lines(&text).find_map(|(line, _, directive)| match directive {
@@ -39,27 +52,29 @@ impl Source {
                 variants::parse(list).map_err(|problem| Error::Directive { path: path.clone(), line, problem })?
             }
         };
-        let read = |definitions: Vec<Definition>| {
-            let name = variants::shader_name(file, &definitions);
-            Ok((name, Source::read(root, &path, &text, definitions)?))
-        };
-        variants.into_iter().map(read).collect()
+        Ok((variants, text.len()))
     }
 
-    fn read(root: &Path, path: &Path, text: &str, definitions: Vec<Definition>) -> Result<Source, Error> {
+    /// Reads one variant of a file of [`Source::list_variants`], with everything that it includes.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a first line other than `#version 450`, an include that is misspelt, missing, cyclic
+    /// or conditional, variants that are misplaced, and a text that is too long.
+    pub(super) fn read(root: &Path, file: &str, definitions: Vec<Definition>) -> Result<Source, Error> {
+        let path = root.join(file);
+        let text = read_text(root, &path)?;
         if text.lines().next().map(str::trim_end) != Some("#version 450") {
-            return Err(Error::Version { path: path.to_owned() });
+            return Err(Error::Version { path });
         }
-        let files = vec![path.to_owned()];
-        let mut source = Source { text: String::new(), definitions, files, origins: Vec::new() };
-        source.append(root, text, &mut vec![0])?;
+        let mut source = Source { text: String::new(), definitions, files: vec![path], origins: Vec::new() };
+        source.append(root, &text, &mut vec![0])?;
         Ok(source)
     }
 
     /// The file and the line in it, from 1, behind line `line`, from 1, of the text.
     pub fn origin(&self, line: usize) -> Option<(&Path, usize)> {
         let &(file, line) = self.origins.get(line.checked_sub(1)?)?;
-        Some((&self.files[file], line))
+        Some((&self.files[file as usize], line as usize))
     }
 
     /// The shader's own file.
@@ -88,10 +103,13 @@ impl Source {
                             let chain = self.describe_cycle(root, stack, known);
                             return Err(problem(DirectiveProblem::IncludeCycle(chain)));
                         }
-                        Some(_) => self.push_line("", file, line_number),
+                        Some(_) => self.push_line("", file, line_number)?,
                         None => {
                             if stack.len() == MOST_NESTED {
                                 return Err(problem(DirectiveProblem::IncludeDepth));
+                            }
+                            if self.files.len() == MOST_FILES {
+                                return Err(problem(DirectiveProblem::IncludeCount));
                             }
                             let included = read_text(root, &path)?;
                             self.files.push(path);
@@ -108,7 +126,7 @@ impl Source {
                     }
                     has_variants = true;
                     let defines: Vec<String> = self.definitions.iter().map(variants::define).collect();
-                    defines.iter().for_each(|define| self.push_line(define, file, line_number));
+                    defines.iter().try_for_each(|define| self.push_line(define, file, line_number))?;
                     continue;
                 }
                 Some(("line", _)) => return Err(problem(DirectiveProblem::Line)),
@@ -116,12 +134,16 @@ impl Source {
                 Some(("endif", _)) => condition_depth = condition_depth.saturating_sub(1),
                 _ => {}
             }
-            self.push_line(line, file, line_number);
+            self.push_line(line, file, line_number)?;
         }
         Ok(())
     }
 
-    fn push_line(&mut self, line: &str, file: usize, line_number: usize) {
+    fn push_line(&mut self, line: &str, file: usize, line_number: usize) -> Result<(), Error> {
+        if self.text.len() + line.len() >= MOST_TEXT {
+            let problem = DirectiveProblem::TextLength;
+            return Err(Error::Directive { path: self.files[file].clone(), line: line_number, problem });
+        }
         // glslang reports tokens byte by byte; ASCII keeps its log valid UTF-8.
         self.text.extend(line.chars().map(|c| match c {
             '\t' | ' '..='~' => c,
@@ -129,7 +151,9 @@ impl Source {
             _ => '?',
         }));
         self.text.push('\n');
-        self.origins.push((file, line_number));
+        // Both are at most the bytes that were read, of which there are few.
+        self.origins.push((file as u32, line_number as u32));
+        Ok(())
     }
 
     fn describe_cycle(&self, root: &Path, stack: &[usize], start: usize) -> String {
@@ -144,8 +168,12 @@ impl Source {
 
 /// Files that include each other.
 const MOST_NESTED: usize = 64;
-/// Of one file; all of a paper's shaders together have some hundred kilobytes.
-const MOST_BYTES: u64 = 16 << 20;
+/// Of one file; the largest of our own has 16 KB.
+const MOST_BYTES: u64 = 256 << 10;
+/// Of a shader with its includes; the largest of our own has 53 KB.
+const MOST_TEXT: usize = 512 << 10;
+/// That a shader includes; our own include 25. Each is looked for among those before it.
+const MOST_FILES: usize = 512;
 
 /// The text of a regular file below `root`, symbolic links followed: a compiler's message shows what it read.
 fn read_text(root: &Path, path: &Path) -> Result<String, Error> {
@@ -159,9 +187,12 @@ fn read_text(root: &Path, path: &Path) -> Result<String, Error> {
             return refused("it is not a regular file");
         }
         if metadata.len() > MOST_BYTES {
-            return refused("it is too large for a shader");
+            return refused("it has more than 262144 bytes, too many for a shader");
         }
-        fs::read_to_string(path)
+        let mut text = String::new();
+        // It may grow meanwhile.
+        fs::File::open(path)?.take(MOST_BYTES).read_to_string(&mut text)?;
+        Ok(text)
     };
     read().map_err(|source| Error::Read { path: path.to_owned(), source })
 }

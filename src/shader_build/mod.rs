@@ -23,6 +23,9 @@
 //! Everything that goes by a shader's name, passes, records, [`NAGA_EXCEPTIONS`] and `--shader-dir`, knows the
 //! variants alone; an error names the file and the line that were written.
 //!
+//! A folder may be anybody's, so files, texts after includes and variants have bounds, several times what our own shaders
+//! need. How much a compiler takes for a text within them is the compiler's.
+//!
 //! # The GLSL that both compilers accept
 //!
 //! Tried with glslang 0.9.1 and naga 30.0.1; the binaries of both were run and compared.
@@ -71,6 +74,8 @@ use std::fs;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
+
+use variants::Definition;
 
 pub use agreement::check_same_interface;
 #[cfg(embedded_shaders)]
@@ -194,34 +199,71 @@ impl Diagnostic {
 /// one of its name in `known`, sorted by name and made by the same compilers, is taken from there: compiling all takes seconds.
 ///
 /// # Errors
-/// The first file that cannot be read, include that cannot be resolved, list of variants that is misspelt, name that
-/// two files make and shader that glslang refuses.
+/// The first file that cannot be read, link to a folder, include that cannot be resolved, list of variants that is
+/// misspelt, name that two files make, bound that is broken and shader that glslang refuses.
 /// A shader that naga refuses, or gives another interface, is no error here but the reason in
 /// [`CompiledShader::naga`], which [`check_exceptions`] judges.
 pub fn compile_dir(root: &Path, known: &[EmbeddedShader]) -> Result<Vec<CompiledShader>, Error> {
     let mut files = Vec::new();
-    list_files(root, "", &mut files)?;
-    let mut sources = Vec::new();
+    list_files(root, "", 0, &mut files)?;
+    let too_many = |of, limit| Err(Error::TooMany { path: root.to_owned(), of, limit });
+    let mut shaders = Vec::new();
+    let mut limit = SPARE_BYTES;
     for (file, stage) in &files {
-        let variants = Source::read_variants(root, file)?;
-        sources.extend(variants.into_iter().map(|(name, source)| (name, file, *stage, source)));
+        let (variants, bytes) = Source::list_variants(root, file)?;
+        limit += TIMES_FILES * bytes as u64;
+        if shaders.len() + variants.len() > MOST_SHADERS {
+            return too_many("shaders, variants among them", MOST_SHADERS);
+        }
+        let named = |variant: Vec<Definition>| (variants::shader_name(file, &variant), file, *stage, variant);
+        shaders.extend(variants.into_iter().map(named));
     }
-    sources.sort_by(|a, b| a.0.cmp(&b.0));
-    if let Some(twice) = sources.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+    shaders.sort_by(|a, b| a.0.cmp(&b.0));
+    if let Some(twice) = shaders.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         let files = [twice[0].1.clone(), twice[1].1.clone()];
         return Err(Error::MadeTwice { shader: twice[0].0.clone(), files });
     }
-    sources.iter().map(|(name, _, stage, source)| compile(name, *stage, source, known)).collect()
+    let read = |(_, file, _, variant): &(_, &String, _, Vec<Definition>)| Source::read(root, file, variant.clone());
+    // Before the first is compiled, which takes longer; one text at a time, or many large ones would be in memory.
+    let mut bytes = 0;
+    for shader in &shaders {
+        bytes += read(shader)?.text.len() as u64;
+        if bytes > limit {
+            return Err(Error::TooMuch { path: root.to_owned(), bytes, limit });
+        }
+    }
+    shaders.iter().map(|shader| compile(&shader.0, shader.2, &read(shader)?, known)).collect()
 }
 
-fn list_files(folder: &Path, prefix: &str, files: &mut Vec<(String, Stage)>) -> Result<(), Error> {
+/// Of a folder with its variants; our own are 505.
+const MOST_SHADERS: usize = 4096;
+/// Of a folder, those of other endings and folders among them; our own has 540.
+const MOST_ENTRIES: usize = 8192;
+/// Folders in each other.
+const MOST_FOLDERS: usize = 16;
+/// Bytes of all shaders after their includes, and as many times the bytes of their own files. Our own have 9 MB of 0.6.
+const SPARE_BYTES: u64 = 4 << 20;
+const TIMES_FILES: u64 = 32;
+
+fn list_files(folder: &Path, prefix: &str, depth: usize, files: &mut Vec<(String, Stage)>) -> Result<(), Error> {
     let read_error = |source| Error::Read { path: folder.to_owned(), source };
-    for entry in fs::read_dir(folder).map_err(read_error)? {
+    let too_many = |of, limit| Err(Error::TooMany { path: folder.to_owned(), of, limit });
+    if depth > MOST_FOLDERS {
+        return too_many("folders in each other", MOST_FOLDERS);
+    }
+    for (count, entry) in fs::read_dir(folder).map_err(read_error)?.enumerate() {
+        if count >= MOST_ENTRIES || files.len() >= MOST_SHADERS {
+            return too_many("files", MOST_ENTRIES.min(MOST_SHADERS));
+        }
         let entry = entry.map_err(read_error)?;
         let file_name = entry.file_name();
         let name = format!("{prefix}{}", file_name.to_string_lossy());
-        if entry.file_type().map_err(read_error)?.is_dir() {
-            list_files(&entry.path(), &format!("{name}/"), files)?;
+        let kind = entry.file_type().map_err(read_error)?;
+        if kind.is_dir() {
+            list_files(&entry.path(), &format!("{name}/"), depth + 1, files)?;
+        } else if kind.is_symlink() && entry.path().is_dir() {
+            // It may lead out of the folder or around in it; to leave it out would ignore edits in silence.
+            return Err(Error::LinkedFolder { path: entry.path() });
         } else if let Some(stage) = Stage::from_file_name(&name) {
             files.push((name, stage));
         }

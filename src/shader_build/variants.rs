@@ -7,6 +7,10 @@ pub(super) type Definition = (String, String);
 
 /// Each is compiled.
 const MOST_COMBINATIONS: usize = 256;
+/// Names of a list, each of which is compared with those before it.
+const MOST_NAMES: usize = 16;
+/// Letters of a name or value, which an include may repeat.
+const MOST_LETTERS: usize = 64;
 
 /// The combinations of `BASE=plane,curved LOD=pixel,exact`, the last name changing fastest.
 pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem> {
@@ -14,6 +18,9 @@ pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem
     for token in line.split_whitespace().take_while(|token| !token.starts_with("//")) {
         let (name, values) = token.split_once('=').ok_or(DirectiveProblem::VariantsSyntax)?;
         let values: Vec<&str> = values.split(',').collect();
+        if combinations.len() * values.len() > MOST_COMBINATIONS || combinations[0].len() == MOST_NAMES {
+            return Err(DirectiveProblem::VariantsSyntax);
+        }
         let is_new = combinations[0].iter().all(|(known, _)| known != name);
         let is_distinct = values.iter().enumerate().all(|(i, value)| !values[..i].contains(value));
         if !is_new || !is_distinct || !is_name(name) || !values.iter().all(|value| is_value(value)) {
@@ -23,20 +30,20 @@ pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem
             let with = |value: &&str| [&combination[..], &[(name.to_owned(), (*value).to_owned())]].concat();
             values.iter().map(with).collect::<Vec<_>>()
         };
-        if combinations.len() * values.len() > MOST_COMBINATIONS {
-            return Err(DirectiveProblem::VariantsSyntax);
-        }
         combinations = combinations.iter().flat_map(extend).collect();
     }
     if combinations[0].is_empty() { Err(DirectiveProblem::VariantsSyntax) } else { Ok(combinations) }
 }
 
 fn is_name(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(|c| c.is_ascii_uppercase() || c == '_')
+    let is_short = name.len() <= MOST_LETTERS;
+    is_short
+        && name.starts_with(|c: char| c.is_ascii_uppercase())
+        && name.chars().all(|c| c.is_ascii_uppercase() || c == '_')
 }
 
 fn is_value(value: &str) -> bool {
-    !value.is_empty() && value.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+    (1..=MOST_LETTERS).contains(&value.len()) && value.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
 }
 
 /// The name of the shader that `file` makes with these definitions: `a/b.comp` makes `a/b-plane-exact.comp`.

@@ -93,7 +93,8 @@ impl Layout {
         text.map(|text| Self::parsed(&text)).unwrap_or_default()
     }
 
-    fn parsed(text: &str) -> Self {
+    /// The layout that the text has, within its bounds, or the default.
+    pub fn parsed(text: &str) -> Self {
         serde_json::from_str::<Layout>(text).unwrap_or_default().bounded()
     }
 

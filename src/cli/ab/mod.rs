@@ -76,7 +76,9 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     let named = arguments.verdict.json.iter().filter(|path| path.as_os_str() != "-");
     files.iter().chain([&verdicts]).chain(named.clone()).try_for_each(|path| file::check_writable(path))?;
     // Verdicts that are named as the folder's own are the same.
-    outcome::check_apart(files.iter().chain(named), &[])?;
+    let read = [Side::A, Side::B].map(|side| arguments.read(side)).concat();
+    outcome::check_apart(files.iter().chain(named), &read)?;
+    outcome::check_apart([&verdicts], &read)?;
     let interrupted = interrupted();
     let own = arguments.own_blocks()?;
     let bar = progress_bar(arguments.quiet, "blocks A B B A");

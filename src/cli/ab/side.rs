@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::AbArgs;
 use crate::cli::failure::Failure;
+use crate::cli::listed;
 use crate::cli::processes::{OF_THE_FIRST, finish, without};
 use crate::cli::watch::interrupted;
 use crate::content;
@@ -105,6 +106,18 @@ impl AbArgs {
         };
         let arguments = [paper.clone(), "bench".into()].into_iter().chain(options.iter().cloned());
         Ok(arguments.chain(own.iter().map(OsString::from)).collect())
+    }
+
+    /// The files that a side reads, as far as this program knows its options: those of another build may be others.
+    pub fn read(&self, side: Side) -> Vec<PathBuf> {
+        let arguments = self.arguments(side).unwrap_or_default();
+        let papers = listed();
+        let paper = arguments.first().and_then(|name| papers.iter().find(|paper| name == paper.name));
+        let read = paper.and_then(|paper| {
+            let matches = (paper.command)().try_get_matches_from(&arguments).ok()?;
+            Some((paper.read)(matches.subcommand_matches("bench")?))
+        });
+        read.unwrap_or_default().into_iter().chain(self.binary(side).cloned()).collect()
     }
 
     /// The command that measures a side once, as a shell takes it.

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use self::pictures::Film;
+pub use self::pictures::{Film, missing as missing_parts};
+pub use self::records::{Shards, in_folders as shards_in_folders};
 use super::failure::Failure;
 use super::film;
 use super::outcome;
@@ -61,23 +62,31 @@ pub fn run(arguments: &AssembleArgs) -> Result<(), Failure> {
                        experiments leave them";
         return Err(Failure::Input(message.to_owned()));
     }
-    if !parts.is_empty() {
-        arguments.assemble(parts)?;
+    let mut read: Vec<PathBuf> = measurements.iter().flat_map(records::Shards::read).collect();
+    let film = if parts.is_empty() { None } else { Some(Film::of(parts)?) };
+    let mut written = Vec::new();
+    if let Some(film) = &film {
+        film.check_whole()?;
+        read.extend(film.read());
+        match &arguments.film {
+            Some(path) => {
+                film::check(path)?;
+                written.push(path.clone());
+            }
+            None => written.extend(film.pictures(&arguments.out)?),
+        }
     }
-    for shards in measurements {
-        shards.publish(&arguments.out, arguments.quiet)?;
-    }
-    Ok(())
+    let joined = measurements.into_iter().map(|shards| shards.joined(&arguments.out)).collect::<Result<Vec<_>, _>>()?;
+    outcome::check_apart(written.iter().chain(joined.iter().flat_map(records::Joined::files)), &read)?;
+    film.map_or(Ok(()), |film| arguments.assemble(&film))?;
+    joined.iter().try_for_each(|whole| whole.publish(arguments.quiet))
 }
 
 impl AssembleArgs {
     /// Writes the pictures, or the film.
-    fn assemble(&self, parts: Vec<(PathBuf, part::Part)>) -> Result<(), Failure> {
-        let whole = Film::of(parts)?;
-        whole.check_whole()?;
+    fn assemble(&self, whole: &Film) -> Result<(), Failure> {
         let wrote = match &self.film {
             Some(path) => {
-                film::check(path)?;
                 let count = film::shoot(path, self.film_rate, whole.frames())?;
                 format!("wrote {count} frames to {}", path.display())
             }

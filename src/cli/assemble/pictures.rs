@@ -1,12 +1,12 @@
 //! Parts of films, put together.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use super::super::failure::Failure;
 use super::super::part::{Part, rows_suffix};
 use crate::file;
-use crate::image::{Rgba8, write_png};
+use crate::image::{self, Rgba8, write_png};
 use crate::measure::shard::Shard;
 
 /// Parts of one film, frame by frame, each frame's by their first row.
@@ -99,17 +99,15 @@ impl Film {
     fn frame(&self, parts: &[(PathBuf, Part)]) -> Result<Rgba8, Failure> {
         let checked = |(path, part): &(PathBuf, Part)| {
             let picture = path.with_file_name(&part.picture);
-            part.checked_picture(&picture)?.ok_or_else(|| {
-                let message =
-                    format!("assembling {}: it is not the picture that was drawn; render it again", picture.display());
-                Failure::Input(message)
-            })
+            part.checked_picture(&picture)
+                .map_err(unread)?
+                .ok_or_else(|| to_be_drawn(&picture, "it is not the picture that was drawn"))
         };
         // All are seen to be right before the first takes its memory.
         let checked = parts.iter().map(checked).collect::<Result<Vec<_>, _>>()?;
         let mut pixels = Vec::new();
         for rows in checked {
-            pixels.extend_from_slice(rows.into_picture()?.pixels());
+            pixels.extend_from_slice(rows.into_picture().map_err(unread)?.pixels());
         }
         Ok(Rgba8::new(self.size[0], self.size[1], pixels)?)
     }
@@ -121,13 +119,66 @@ impl Film {
 
     /// Writes every frame under the name that the whole film would have given it, and gives their number.
     pub fn write(&self, out: &Path) -> Result<usize, Failure> {
-        for parts in self.parts.values() {
-            let name = parts.first().map(|(_, part)| whole_name(part)).unwrap_or_default();
-            let path = out.join(name);
-            file::check_writable(&path)?;
-            write_png(&path, &self.frame(parts)?)?;
+        for (path, parts) in self.pictures(out)?.iter().zip(self.parts.values()) {
+            file::check_writable(path)?;
+            write_png(path, &self.frame(parts)?)?;
         }
         Ok(self.parts.len())
+    }
+
+    /// The files that [`write`](Self::write) writes.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for parts that name one picture, or pictures of two series.
+    pub fn pictures(&self, out: &Path) -> Result<Vec<PathBuf>, Failure> {
+        let all = self.parts.values().flatten();
+        let (mut of_names, mut first) = (HashMap::<String, (u32, &Path)>::new(), None);
+        for (path, part) in all {
+            let name = whole_name(part);
+            let (frame, other) = *of_names.entry(name.clone()).or_insert((part.frame, path));
+            if frame != part.frame {
+                let (a, b) = (other.display(), path.display());
+                return Err(Failure::Input(format!(
+                    "assembling {a} and {b}: both name the picture {name}; render what they are of again"
+                )));
+            }
+            let series = if self.is_range() { series_of(&name, part.frame) } else { name.clone() };
+            let (known, of_first, a) = first.get_or_insert_with(|| (series.clone(), name.clone(), path));
+            if *known != series {
+                let (a, b) = (a.display(), path.display());
+                return Err(Failure::Input(format!(
+                    "assembling {a} and {b}: their pictures are named {of_first} and {name}; give all one --image"
+                )));
+            }
+        }
+        let of_frame = |parts: &Vec<(PathBuf, Part)>| parts.first().map(|(_, part)| out.join(whole_name(part)));
+        Ok(self.parts.values().filter_map(of_frame).collect())
+    }
+
+    /// The files that are read: descriptions and pictures.
+    pub fn read(&self) -> impl Iterator<Item = PathBuf> {
+        let parts = self.parts.values().flatten();
+        parts.flat_map(|(path, part)| [path.clone(), path.with_file_name(&part.picture)])
+    }
+}
+
+/// The name of a picture of several frames without the number of its own.
+fn series_of(name: &str, frame: u32) -> String {
+    let path = Path::new(name);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    stem.strip_suffix(&format!("-{frame:04}")).map_or_else(|| name.to_owned(), |series| format!("{series}.{ending}"))
+}
+
+fn to_be_drawn(picture: &Path, reason: &str) -> Failure {
+    Failure::Input(format!("assembling {}: {reason}; render it again", picture.display()))
+}
+
+/// The refusal of a picture that cannot be read: the program has written it, and can do so again.
+fn unread(error: image::Error) -> Failure {
+    match &error {
+        image::Error::Open { path, reason } | image::Error::Png { path, reason } => to_be_drawn(path, reason),
+        _ => error.into(),
     }
 }
 

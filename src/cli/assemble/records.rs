@@ -7,6 +7,7 @@ use super::super::failure::Failure;
 use super::super::{outcome, stress};
 use crate::file;
 use crate::measure::compare::difference_of_machines;
+use crate::measure::shard;
 use crate::measure::stress::console::{Form, tables};
 use crate::report::record::{Environment, Record};
 use crate::report::stress::{SCHEMA, Series, StopKind, StressRecord};
@@ -46,6 +47,12 @@ pub fn in_folders(folders: &[PathBuf]) -> Result<Vec<Shards>, Failure> {
                 let message = format!("assembling {}: it is the record of no shard; move it away", path.display());
                 return Err(Failure::Input(message));
             };
+            if number >= count || count > shard::MOST {
+                return Err(Failure::Input(format!(
+                    "assembling {}: it is of shard {number} of {count}, which is none; move it away",
+                    path.display()
+                )));
+            }
             let shards = found.entry(stem.clone()).or_insert_with(|| Shards { stem, count, parts: BTreeMap::new() });
             let other = shards.parts.insert(number, (path.clone(), part));
             let (a, b) = (other.as_ref().map_or(folder, |(path, _)| path).display(), path.display());
@@ -135,11 +142,24 @@ impl Shards {
         Ok((0..count).filter(is_missing).collect())
     }
 
+    /// The files of the records.
+    pub fn read(&self) -> impl Iterator<Item = PathBuf> {
+        self.parts.values().map(|(path, _)| path.clone())
+    }
+
     /// Joins the records, and writes the whole with its rows and plots.
     ///
     /// # Errors
-    /// [`Failure::Input`] for parts that are missing, or of other settings or machines.
+    /// As [`joined`](Self::joined); a file that cannot be written.
     pub fn publish(self, out: &Path, is_quiet: bool) -> Result<(), Failure> {
+        self.joined(out)?.publish(is_quiet)
+    }
+
+    /// Joins the records.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for parts that are missing, or of other settings or machines.
+    pub fn joined(self, out: &Path) -> Result<Joined, Failure> {
         let missing: Vec<String> = self.missing(self.count)?.iter().map(u32::to_string).collect();
         if !missing.is_empty() {
             let (stem, missing, count) = (&self.stem, missing.join(", "), self.count);
@@ -166,19 +186,42 @@ impl Shards {
                 Part::Bench(record) => bench.push((path, *record)),
             }
         }
-        let mut files = Vec::new();
+        let (mut files, mut printed) = (Vec::new(), String::new());
         if let Some(whole) = of_stress(stress)? {
             files.push((json, outcome::text(&whole)?));
             files.extend(stress::outcome_files(&whole, &self.stem, out, csv));
-            if !is_quiet {
-                outcome::print(&tables(&whole, Form::Console(outcome::style())))?;
-            }
+            printed = tables(&whole, Form::Console(outcome::style()));
         } else if let Some(whole) = of_bench(bench)? {
             files.push((json, outcome::text(&whole)?));
             files.push((csv, csv::to_string(&whole)));
         }
-        for (path, text) in files {
-            file::write(&path, text.as_bytes())?;
+        Ok(Joined { files, printed })
+    }
+}
+
+/// Records of all shards as one, still to be written.
+pub struct Joined {
+    files: Vec<(PathBuf, String)>,
+    /// For standard output.
+    printed: String,
+}
+
+impl Joined {
+    /// The files that [`publish`](Self::publish) writes.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.files.iter().map(|(path, _)| path)
+    }
+
+    /// Writes the whole with its rows and plots.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn publish(&self, is_quiet: bool) -> Result<(), Failure> {
+        if !is_quiet {
+            outcome::print(&self.printed)?;
+        }
+        for (path, text) in &self.files {
+            file::write(path, text.as_bytes())?;
             if !is_quiet {
                 outcome::say(&format!("wrote {}", path.display()));
             }

@@ -20,6 +20,7 @@ use super::failure::Failure;
 use super::options::{MachineArgs, number_in};
 use super::outcome;
 use super::processes::without;
+use super::reading;
 use super::watch::interrupted;
 use crate::file::check_writable;
 use crate::measure::Variant;
@@ -301,10 +302,13 @@ impl<S: Study> Ascent<'_, S> {
         let is_printed = self.json.as_deref().is_some_and(|path| path.as_os_str() == "-");
         let json = self.json.clone().filter(|_| !is_printed).unwrap_or_else(|| file(".json"));
         let csv = self.csv.clone().unwrap_or_else(|| file(".csv"));
+        // Before a device is opened.
+        let file = File::new(json.clone());
+        let left = file.left(self.limits.anew)?;
         check_writable(&json)?;
         outcome::check_file(&csv)?;
-        outcome::check_apart([&json, &csv], &outcome::read_by(&self.setup))?;
-        let record = self.climb(File::new(json.clone()), budget_s)?;
+        outcome::check_apart([&json, &csv], &reading::by_study(&self.setup, self.machine))?;
+        let record = self.climb(file, left, budget_s)?;
 
         let files = outcome_files(&record, &self.stem(), &self.output.out, csv);
         let printed = match (is_printed, self.output.markdown) {
@@ -331,7 +335,7 @@ impl<S: Study> Ascent<'_, S> {
         format!("stress-{}-{}{across}{}{shard}", S::PAPER, self.axis.name, self.suffix)
     }
 
-    fn climb(&self, file: File, budget_s: f64) -> Result<StressRecord, Failure> {
+    fn climb(&self, file: File, left: Option<StressRecord>, budget_s: f64) -> Result<StressRecord, Failure> {
         let ladder = |axis: &Axis<S>, from: Option<u64>| Ladder {
             from: from.unwrap_or(axis.start),
             factor: self.limits.factor,
@@ -354,8 +358,6 @@ impl<S: Study> Ascent<'_, S> {
         self.axis.set(&mut setup, first)?;
         let started = Instant::now();
         let children = Children::new(&self.child_arguments, self.output.quiet)?;
-        // Before a device is opened.
-        let left = file.left(self.limits.anew)?;
         let template = self.template(&children)?;
         let known = file.known(left, &template)?;
         let mut climber = climber::MachineClimber {
@@ -388,7 +390,8 @@ pub fn outcome_files(record: &StressRecord, stem: &str, folder: &Path, csv: Path
     for series in &record.series {
         let across = series.across.map_or_else(String::new, |value| format!("-{value}"));
         let alone = record.series.len() == 1;
-        let name = if alone { format!("{stem}.svg") } else { format!("{stem}-{}{across}.svg", series.variant) };
+        // A record's text is no path.
+        let name = if alone { format!("{stem}.svg") } else { format!("{stem}-{}{across}.svg", slug(&series.variant)) };
         plot(name, plots::series(record, series));
     }
     files

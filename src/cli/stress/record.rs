@@ -25,7 +25,7 @@ impl File {
         File { path }
     }
 
-    /// What an earlier call left; nothing where there is no file, or all is to be measured anew.
+    /// The record that an earlier call left; none where there is no file, or all is to be measured anew.
     ///
     /// # Errors
     /// [`Failure::Input`] for a file that cannot be read or is no such record.

@@ -108,7 +108,7 @@ pub struct Sums {
     pub light: Arc<Buffer>,
     /// Number of the triangles that do not land whole, and a list of them.
     pub straddling: Arc<Buffer>,
-    /// uint\[2\]: invocations of `land` and of `straddle` whose loops the driver left early.
+    /// uint\[3\]: invocations of `intersect`, `land` and `straddle` that left loops early; of the first 1 for any.
     pub unfinished: Arc<Buffer>,
 }
 
@@ -169,7 +169,7 @@ impl HitMap {
                 context.device(),
                 &context.name("unfinished"),
                 vk::BufferUsageFlags::STORAGE_BUFFER,
-                bytemuck::bytes_of(&[0_u32; 2]),
+                bytemuck::bytes_of(&[0_u32; 3]),
             )?,
         };
         let hit = HitPass { scope, pyramid: &position_pyramid, hidden };
@@ -190,7 +190,7 @@ impl HitMap {
         };
         Ok(HitMap {
             empty_sums: empty_sums(shaders, &sums.light, &sums.straddling)?,
-            intersect: intersect(hit, &landings)?,
+            intersect: intersect(hit, &landings, &sums.unfinished)?,
             land: land(hit, &landings, &sums)?,
             straddle: straddle(hit, &sums)?,
             caustics_maps: surfaces.iter().map(caustics_map).collect::<Result<_, _>>()?,
@@ -201,21 +201,25 @@ impl HitMap {
         })
     }
 
-    /// Fails where light of a frame since the last check is missing, since the driver left loops before their end.
+    /// Fails where light of a frame since the last check is missing, since loops were left before their end.
     ///
     /// # Errors
     /// [`Error::Pass`] for such a loop; errors of the Vulkan layer.
     pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
         let invocations: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(device, &self.unfinished)?);
-        let Some((pass, count)) = ["land", "straddle"].into_iter().zip(invocations).find(|&(_, count)| count > 0)
+        let Some((pass, count)) =
+            ["intersect", "land", "straddle"].into_iter().zip(invocations).find(|&(_, count)| count > 0)
         else {
             return Ok(());
         };
-        update(&self.unfinished, bytemuck::bytes_of(&[0_u32; 2]))?;
+        update(&self.unfinished, bytemuck::bytes_of(&[0_u32; 3]))?;
+        let (left, remedy) = match pass {
+            "intersect" => ("rays did not end".to_owned(), "a smaller `map-size`, fewer `layers`"),
+            _ => (format!("{count} invocations left light out"), "more `water-triangles`, a smaller `map-size`"),
+        };
         let problem = format!(
-            "{} invocations left light out: this driver leaves a shader's loops early, as after 65,535 iterations together; \
-             take more `water-triangles`, a smaller `map-size` or variant culled",
-            count
+            "{left}: drivers leave a shader's loops early, as after 65,535 iterations together; \
+             take {remedy} or variant culled"
         );
         Err(Error::Pass { pass: pass.into(), problem })
     }

@@ -10,7 +10,7 @@ use super::drape::{Drape, Draping};
 use crate::image::CheckedPng;
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, parse_finite};
-use crate::scene::{Coordinates, HeightMap, world_file};
+use crate::scene::{Coordinates, HeightMap, shown, world_file};
 
 /// Source of a drape.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,6 +160,8 @@ impl<'a> Picture<'a> {
             );
             return Err(Error::Input(message));
         };
+        check_texels(&coordinates, map)
+            .map_err(|reason| Error::Input(format!("{}: {reason}", world_file.display())))?;
         let (corners, map_corners) = (coordinates.corners(width, height), of_map.corners(map.width(), map.height()));
         // The same meridian may have two names.
         let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
@@ -167,7 +169,9 @@ impl<'a> Picture<'a> {
         let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
         let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
         if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
-            let shown = |number: f64| (number * 1e6).round() / 1e6;
+            // A number too large for that has no fraction.
+            let rounded = |number: f64| Some((number * 1e6).round() / 1e6).filter(|rounded| rounded.is_finite());
+            let shown = |number: f64| shown(rounded(number).unwrap_or(number));
             let span = |[a, b]: [DVec2; 2]| {
                 format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
             };
@@ -184,9 +188,42 @@ impl<'a> Picture<'a> {
     }
 }
 
+/// Passes for texels as large as the distance between samples may be: others would not be seen, or be all that is seen.
+fn check_texels(coordinates: &Coordinates, map: &HeightMap) -> Result<(), String> {
+    /// Metres of a degree of latitude.
+    const DEGREE_M: f64 = 111_000.0;
+    let unit_m = if map.geographic().is_some() { DEGREE_M } else { 1.0 };
+    let range = HeightMap::SPACING_M;
+    let beyond = [(1, coordinates.step.x), (4, coordinates.step.y)];
+    match beyond.into_iter().find(|(_, step)| !range.contains(&(step * unit_m))) {
+        None => Ok(()),
+        Some((line, step)) => Err(format!(
+            "line {line}: its texels are {} m large in the first map's coordinates, and have to be {} to {} m",
+            shown(step * unit_m),
+            range.start(),
+            range.end()
+        )),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Samples;
+
+    #[test]
+    fn texels_are_as_large_as_can_be_seen() {
+        let map = HeightMap::new(2, 2, Samples::Float(vec![0.0; 4])).unwrap();
+        let check =
+            |x: f64, y: f64| check_texels(&Coordinates { north_west: DVec2::ZERO, step: DVec2::new(x, y) }, &map);
+        assert_eq!((check(1e-6, 1e6), check(0.5, 30.0)), (Ok(()), Ok(())));
+        assert!(check(1e-8, 1.0).unwrap_err().starts_with("line 1: its texels are 1e-8 m large"));
+        assert!(
+            check(1.0, 1e300)
+                .unwrap_err()
+                .ends_with("1e300 m large in the first map's coordinates, and have to be 0.000001 to 1000000 m")
+        );
+    }
 
     #[test]
     fn words_are_drapes_and_all_else_is_a_file() {

@@ -100,7 +100,7 @@ use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
 use self::stage::{Build, PixelPass, Stage, Traversal};
 use self::start::Starts;
-pub use self::tile_file::TileFile;
+pub use self::tile_file::{TileFile, read_head as read_tile_file};
 pub use self::tiles::TileCounts;
 use self::tiles::Tiles;
 pub use self::voids::void_warnings;
@@ -129,6 +129,8 @@ pub struct Terrain {
     technique: Technique,
     objects: Option<ObjectPasses>,
     corners: Option<Corners>,
+    /// Lines on objects that lie beside the maps.
+    strays: Vec<String>,
 }
 
 /// The passes that make the picture of the terrain.
@@ -197,6 +199,7 @@ impl Terrain {
             }
         };
         let scene = Scene::new(parameters, inputs);
+        let strays = warnings::off_the_maps(inputs.objects, &scene.extent);
         scene.check_tiles(label, variant)?;
         let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
         let is_packed = walks && packed::is_packed(shaders.device(), parameters, scene.height_maps());
@@ -242,6 +245,7 @@ impl Terrain {
             technique,
             objects: None,
             corners: walks.then_some(if is_packed { Corners::Packed } else { Corners::Image }),
+            strays,
         };
         if !inputs.objects.is_empty() {
             let casters = terrain.device_scene.as_ref().zip(device_tree.as_ref());
@@ -456,7 +460,7 @@ impl Paper for Terrain {
                 .to_owned()
         });
         let unheeded = warnings::unheeded(&self.parameters, &self.given, self.variant);
-        let of_variant = unpacked.into_iter().chain(unread).chain(unheeded);
+        let of_variant = unpacked.into_iter().chain(unread).chain(unheeded).chain(self.strays.iter().cloned());
         voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(of_variant).collect()
     }
 

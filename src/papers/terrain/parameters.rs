@@ -11,7 +11,7 @@ use crate::measure::parameter::{
     self, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Value, one, parse_finite, parse_numbers,
 };
 use crate::measure::{self, ParameterError, components, config};
-use crate::scene::Camera;
+use crate::scene::{Camera, HeightMap};
 use crate::{choice, field, named, size_field};
 
 named! {
@@ -330,7 +330,7 @@ impl Parameters {
                 .section("eq. 5, 6")
                 .cost(Cost::Pipelines),
             Parameter::new("base-level", field!(Parameters.base_level_m))
-                .range(Range::from(-1e6).to(1e6))
+                .range(Range::from(-HeightMap::MOST_HEIGHT_M).to(HeightMap::MOST_HEIGHT_M))
                 .unit("metres")
                 .help("Height at which the base surface lies")
                 .default_text("the maps' minimum")

@@ -363,7 +363,7 @@ impl Study for Setup {
                 .everyday()
                 .unrecorded(),
             Parameter::new("spacing", field!(Setup.spacing_m))
-                .range(Range::from(1e-6).to(1e6))
+                .range(Range::from(*HeightMap::SPACING_M.start()).to(*HeightMap::SPACING_M.end()))
                 .unit("metres")
                 .help("Distance between samples")
                 .default_text("what the map says of itself")

@@ -206,7 +206,7 @@ fn make(
 }
 
 /// The file, if it is whole: of the tiles themselves the number alone.
-fn read_head(mut file: File, path: &Path, interpolation: Interpolation) -> Option<TileFile> {
+pub fn read_head(mut file: File, path: &Path, interpolation: Interpolation) -> Option<TileFile> {
     let size_bytes = file.metadata().ok()?.len();
     let mut start = Start::zeroed();
     file.read_exact(bytes_of_mut(&mut start)).ok()?;

@@ -15,7 +15,10 @@ impl Value for Voids {
             "fill" => Ok(Voids::Fill),
             "hole" => Ok(Voids::Hole),
             text => match text.split_once(':') {
-                Some(("level", metres)) => parse_finite(metres).map(Voids::Level),
+                Some(("level", metres)) => match parse_finite(metres)? {
+                    level_m if f64::from(level_m).abs() <= HeightMap::MOST_HEIGHT_M => Ok(Voids::Level(level_m)),
+                    _ => Err(format!("its level must be -{0} to {0} metres", HeightMap::MOST_HEIGHT_M)),
+                },
                 _ => Err("give fill, level:M or hole".to_owned()),
             },
         }
@@ -50,4 +53,25 @@ pub fn void_warnings<'a>(maps: impl ExactSizeIterator<Item = &'a HeightMap>) -> 
         map.void_note().into_iter().chain(suspect).map(move |note| format!("`map` {number} of {of}: {note}"))
     });
     warnings.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_lie_where_the_base_may() {
+        let parse = |text: &str| Voids::parse(&[OsStr::new(text)]);
+        for (text, expected) in [
+            ("fill", Voids::Fill),
+            ("hole", Voids::Hole),
+            ("level:1e6", Voids::Level(1e6)),
+            ("level:-1e6", Voids::Level(-1e6)),
+        ] {
+            assert_eq!(parse(text), Ok(expected));
+        }
+        for text in ["level:1e38", "level:-1000001"] {
+            assert_eq!(parse(text), Err("its level must be -1000000 to 1000000 metres".to_owned()), "{text}");
+        }
+    }
 }

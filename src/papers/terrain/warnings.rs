@@ -1,8 +1,35 @@
-//! Options that a user gave and a variant does not heed.
+//! Options that a user gave and that change nothing: a variant does not heed them, or nothing of them is on the map.
 
 use super::parameters::{Base, Parameters, Variant};
+use super::placement::Extent;
 use crate::measure::Variant as _;
 use crate::measure::parameter::{Given, listed};
+use crate::scene::Mesh;
+
+/// Lines on the objects that lie beside all maps wholly, seen from above.
+pub fn off_the_maps(objects: &[Mesh], extent: &Extent) -> Vec<String> {
+    let warning = |(number, mesh): (usize, &Mesh)| {
+        let bounds = mesh.bounds();
+        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let is_over =
+            low.x <= extent.high.x && high.x >= extent.low.x && low.z <= extent.high.z && high.z >= extent.low.z;
+        // No minus before a zero.
+        let place = |x: f64, z: f64| format!("{},{}", x.round() + 0.0, z.round() + 0.0);
+        (!is_over).then(|| {
+            format!(
+                "`object` {number} of {}, {}, lies off the maps: it reaches from {} to {} metres east and south, the \
+                 maps from {} to {}",
+                objects.len(),
+                mesh.name,
+                place(low.x, low.z),
+                place(high.x, high.z),
+                place(extent.low.x, extent.low.z),
+                place(extent.high.x, extent.high.z)
+            )
+        })
+    };
+    (1..).zip(objects).filter_map(warning).collect()
+}
 
 /// A line that names them, if there are any.
 pub fn unheeded(parameters: &Parameters, given: &Given, variant: Variant) -> Option<String> {
@@ -22,6 +49,21 @@ pub fn unheeded(parameters: &Parameters, given: &Given, variant: Variant) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::MeshSource;
+    use glam::{DVec3, Mat4, Vec3};
+
+    #[test]
+    fn objects_beside_all_maps_are_named_with_their_place() {
+        let extent = Extent { low: DVec3::new(-500.0, 0.0, -300.0), high: DVec3::new(500.0, 90.0, 300.0) };
+        let sphere = MeshSource::Sphere.load().unwrap();
+        let at = |x: f32, z: f32| sphere.transformed(&Mat4::from_translation(Vec3::new(x, 5000.0, z)));
+        let on = [at(0.0, 0.0), at(499.0, -300.5), at(-500.5, 0.0)];
+        assert_eq!(off_the_maps(&on, &extent), Vec::<String>::new());
+        let said = off_the_maps(&[at(0.0, 0.0), at(4000.0, 0.0), at(0.0, -900.0)], &extent);
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert!(said[0].starts_with("`object` 2 of 3, ") && said[1].starts_with("`object` 3 of 3, "), "{said:?}");
+        assert!(said[0].contains("it reaches from 39") && said[0].ends_with("the maps from -500,-300 to 500,300"));
+    }
 
     #[test]
     fn given_options_that_a_variant_does_not_heed_are_named() {

@@ -150,6 +150,37 @@ fn texts(svg: &str) -> Vec<String> {
 mod tests {
     use super::*;
 
+    /// Names of meshes, files and devices stand in plots.
+    #[test]
+    fn no_text_is_markup() {
+        let hostile = |place: &str| format!("{place}</text><script>alert(1)</script> ]]> &amp; \" '");
+        let named: Vec<String> = ["title", "x", "y", "first", "second"].map(hostile).into();
+        let [title, x_label, y_label, first, second] = &named[..] else { unreachable!() };
+        let series =
+            |name: &String, reference| Series { name: name.clone(), points: vec![(1.0, 2.0), (2.0, 3.0)], reference };
+        let line = LineChart {
+            title: title.clone(),
+            x_label: x_label.clone(),
+            y_label: y_label.clone(),
+            x_scale: Scale::Linear,
+            y_scale: Scale::Linear,
+            series: vec![series(first, false), series(second, true)],
+        };
+        let bars = BarChart {
+            title: title.clone(),
+            y_label: y_label.clone(),
+            groups: vec![x_label.clone()],
+            series: [first, second].map(|name| BarSeries { name: name.clone(), values: vec![Some(1.0)] }).into(),
+        };
+        for svg in [line.to_svg().unwrap(), bars.to_svg().unwrap()] {
+            let document = roxmltree::Document::parse(&svg).unwrap();
+            assert!(!document.descendants().any(|node| node.has_tag_name("script")));
+            for name in &named {
+                assert!(texts(&svg).contains(name), "{name}");
+            }
+        }
+    }
+
     #[test]
     fn ticks_are_short() {
         let texts = [0.0, 1.0, 0.25, -3.0, 1500.0, 1e-5, 2e7].map(tick);

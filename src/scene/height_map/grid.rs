@@ -1,6 +1,6 @@
 use super::map::check_size;
 use super::void_samples::Watch;
-use super::{Coordinates, Geographic, HeightMap, Samples, voids};
+use super::{Coordinates, Geographic, HeightMap, Samples, shown, voids};
 use crate::scene::Error;
 use crate::scene::error::{Fault, Place};
 use glam::DVec2;
@@ -33,8 +33,6 @@ pub(super) enum Placement {
 
 /// The widest range that whole metres in 16 bits have.
 const STEPS: f64 = u16::MAX as f64;
-/// Whole numbers up to here are exact in 32-bit floating point.
-const EXACT: f64 = 16_777_216.0;
 
 impl<T: Copy + Into<f64>> Grid<T> {
     /// The map, with its voids filled. Whole numbers that 16-bit steps can hold stay exact.
@@ -53,15 +51,15 @@ impl<T: Copy + Into<f64>> Grid<T> {
             let value = (*value).into();
             if is_void(value, no_data) {
                 void_count += 1;
-            } else if (value as f32).is_finite() {
+            } else if is_height(value) {
                 (low, high) = (low.min(value), high.max(value));
                 watch.see(value);
             } else {
-                return Err(not_finite(index / width, index % width, value));
+                return Err(no_height(index / width, index % width, value));
             }
         }
         if void_count == self.values.len() {
-            return Err(whole("all its samples are void; a map needs at least one height".to_owned()));
+            return Err(all_void());
         }
         let mut void_places = Vec::with_capacity(void_count);
         // A map has at most 2^32 samples.
@@ -82,28 +80,71 @@ impl<T: Copy + Into<f64>> Grid<T> {
 }
 
 impl Placement {
+    /// Passes where samples of a map of so many rows lie neither too near nor too far apart; `field` of the file says it.
+    pub(super) fn check(&self, rows: u32, field: &str) -> Result<(), Fault> {
+        /// In degrees a map may have two samples around the Earth.
+        const EARTH_M: f64 = 1e8;
+        let Some(spacing_m) = self.spacing_m(rows) else { return Ok(()) };
+        let (least_m, most_m) = HeightMap::SPACING_M.into_inner();
+        let most_m = if matches!(self, Placement::Degrees(_)) { EARTH_M } else { most_m };
+        if spacing_m.to_array().iter().all(|metres| (least_m..=most_m).contains(metres)) {
+            return Ok(());
+        }
+        let [across, along] = spacing_m.to_array().map(shown);
+        let reason =
+            format!("it makes samples lie {across} x {along} m apart; they have to lie {least_m} to {most_m} m apart");
+        Err(Fault::new(Place::Part(field.to_owned()), reason))
+    }
+
+    /// Metres between columns and rows of a map of so many rows; none where the source does not say.
+    pub(super) fn spacing_m(&self, rows: u32) -> Option<DVec2> {
+        match self {
+            Placement::Unknown => None,
+            Placement::Metres(spacing_m, _) => Some(*spacing_m),
+            Placement::Degrees(place) => Some(place.spacing_m(rows)),
+        }
+    }
+
     /// The map at its place.
     pub(super) fn place(self, map: HeightMap) -> Result<HeightMap, Error> {
-        match self {
-            Placement::Unknown => Ok(map),
-            Placement::Metres(spacing_m, coordinates) => map.with_coordinates(coordinates).with_spacing_m(spacing_m),
-            Placement::Degrees(place) => {
-                let spacing_m = place.spacing_m(map.height());
-                map.with_geographic(place).with_spacing_m(spacing_m)
-            }
-        }
+        let Some(spacing_m) = self.spacing_m(map.height()) else { return Ok(map) };
+        let placed = match self {
+            Placement::Unknown => map,
+            Placement::Metres(_, coordinates) => map.with_coordinates(coordinates),
+            Placement::Degrees(place) => map.with_geographic(place),
+        };
+        placed.with_spacing_m(spacing_m)
     }
 }
 
-/// True where whole numbers between these are 16-bit steps of 1 m.
+/// True where whole heights between these are 16-bit steps of 1 m; all of them are exact in 32-bit floating point.
 pub(super) fn fits_steps(low: f64, high: f64) -> bool {
-    high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT
+    high - low <= STEPS
+}
+
+/// True for a number that can be a height in metres.
+pub(super) fn is_height(value: f64) -> bool {
+    value.abs() <= HeightMap::MOST_HEIGHT_M
 }
 
 /// The fault of a sample that is neither void nor a height.
-pub(super) fn not_finite(row: usize, column: usize, value: f64) -> Fault {
-    let place = format!("row {row}, column {column}");
-    Fault::new(Place::Part(place), format!("its height is {value}, not a finite number"))
+pub(super) fn no_height(row: usize, column: usize, value: f64) -> Fault {
+    let place = Place::Part(format!("row {row}, column {column}"));
+    let number = shown(value);
+    if !value.is_finite() {
+        return Fault::new(place, format!("its height is {number}, not a finite number"));
+    }
+    let most_m = HeightMap::MOST_HEIGHT_M;
+    let reason = format!(
+        "its height is {number} m, and heights are -{most_m} to {most_m} m; if it stands for none, declare it, as by \
+         gdal_translate -a_nodata {number}"
+    );
+    Fault::new(place, reason)
+}
+
+/// The fault of samples of which none is a height.
+pub(super) fn all_void() -> Fault {
+    Fault::new(Place::Whole, "all its samples are void; a map needs at least one height")
 }
 
 /// True when a value is the one that stands for no height.
@@ -141,12 +182,13 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_too_wide_or_too_far_for_steps_are_float() {
-        for values in [[0, 65_536, 1, 2], [1 << 24, (1 << 24) + 1, 1 << 24, 1 << 24]] {
-            assert!(matches!(map::<i32>(&values, true, None).unwrap().samples(), Samples::Float(_)), "{values:?}");
+    fn whole_numbers_too_wide_for_steps_are_float() {
+        assert!(matches!(map::<i32>(&[0, 65_536, 1, 2], true, None).unwrap().samples(), Samples::Float(_)));
+        for low in [-9_000, -1_000_000, 934_465] {
+            let far = map::<i32>(&[low, low + 65_535, low + 1, low], true, None).unwrap();
+            assert!(matches!(far.samples(), Samples::Steps { origin_m, .. } if *origin_m == low as f32));
+            assert_eq!(far.range_m(), (low as f32, (low + 65_535) as f32));
         }
-        let far = map::<i32>(&[-9_000, 56_535, 0, 0], true, None).unwrap();
-        assert!(matches!(far.samples(), Samples::Steps { origin_m: -9_000.0, .. }));
     }
 
     #[test]
@@ -168,10 +210,18 @@ mod tests {
 
     #[test]
     fn heights_that_are_no_number_and_maps_without_heights_are_refused() {
-        for (value, shown) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (-1e300, "-1")] {
+        for (value, shown) in [
+            (f64::NAN, "NaN, not a finite number"),
+            (f64::INFINITY, "inf, not a finite number"),
+            (-1e300, "-1e300 m, and heights are -1000000 to 1000000 m; if"),
+            (1_000_000.5, "1000000.5 m, and heights are"),
+        ] {
             let fault = map(&[0.0, 1.0, value, 3.0], false, Some(-9_999.0)).unwrap_err().to_string();
             assert!(fault.starts_with(&format!("row 1, column 0: its height is {shown}")), "{fault}");
+            assert!(fault.len() < 200, "{fault}");
         }
+        let farthest = map(&[-1e6, 1e6, 0.5, 3.0], false, None).unwrap();
+        assert_eq!(farthest.range_m(), (-1e6, 1e6));
         assert!(map(&[-1_i16; 4], true, Some(-1.0)).unwrap_err().to_string().contains("all its samples are void"));
     }
 }

@@ -39,6 +39,10 @@ pub enum Samples {
 impl HeightMap {
     /// Fewest and most samples a side.
     pub const SIDE: std::ops::RangeInclusive<u32> = 2..=65_536;
+    /// Least and most metres between samples that a file or a user may state: what is far beyond has no picture.
+    pub const SPACING_M: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+    /// Most metres above and below 0 that a height of a file and the level of a base or of voids may lie.
+    pub const MOST_HEIGHT_M: f64 = 1e6;
 
     /// A map of `width` x `height` samples, 1 m apart.
     ///

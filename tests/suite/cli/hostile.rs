@@ -249,6 +249,18 @@ fn links_are_written_through_by_every_writer() {
             assert!(fs::symlink_metadata(out.path().join(name)).unwrap().is_symlink(), "{name}");
         }
     }
+    let more = ["film.y4m", "water.npy", "page.html"];
+    for name in more {
+        symlink(format!("real/{name}"), out.path().join(name)).unwrap();
+    }
+    for written in ["--frame 0..2 --film film.y4m", "--image a.png --dump water=water.npy"] {
+        caustics("render --quiet").args(written).inside(out.path()).tiny().run().succeeded();
+    }
+    fumarole("report a.json --quiet -o page.html").inside(out.path()).run().succeeded();
+    for name in more {
+        assert!(fs::symlink_metadata(out.path().join(name)).unwrap().is_symlink(), "{name}");
+        assert!(fs::metadata(out.path().join("real").join(name)).unwrap().len() > 0, "{name}");
+    }
 }
 
 #[test]

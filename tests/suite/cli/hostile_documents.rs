@@ -51,10 +51,10 @@ fn materials_of_a_large_texture() {
 fn bodies_of_short_lines() {
     let csv = |text: &[u8], part: &str| refused(|| terrain("collide --bodies"), "a.csv", text, &[part]);
     for count in [2_000_000, 2_700_000] {
-        csv(&[&b"1,2,3,4\n".repeat(count)[..], b"x"].concat(), &format!("line {}: it has 1 fields", count + 1));
+        csv(&[&b"1,2,3,4\n".repeat(count)[..], b"x"].concat(), &format!("line {}: it has 1 field", count + 1));
     }
     // Too short for a body each.
-    csv(&b"1\n".repeat(10_000_000), "line 1: it has 1 fields");
+    csv(&b"1\n".repeat(10_000_000), "line 1: it has 1 field");
     let map = || terrain("collide --bodies a.csv --map");
     let files = [("a.asc", &b"x"[..]), ("a.csv", &b"1,2,3,4\n".repeat(2_000_000))];
     refused_of(map, &files, &["a.asc"]);

@@ -168,9 +168,9 @@ fn materials() {
 #[test]
 fn bodies() {
     let csv = |text: &[u8], parts: &[&str]| refused(|| terrain("collide --bodies"), "a.csv", text, parts);
-    csv(&[&b"1,2,3,4\n".repeat(500_000)[..], b"x"].concat(), &["line 500001", "1 fields"]);
+    csv(&[&b"1,2,3,4\n".repeat(500_000)[..], b"x"].concat(), &["line 500001", "1 field"]);
     csv(&b"#\n".repeat(10_000_000), &["no body"]);
-    csv(&b",".repeat(20_000_000), &["no body"]);
+    csv(&b",".repeat(20_000_000), &["line 1", "20000001 fields"]);
     csv(&b"\n".repeat(20_000_000), &["no body"]);
     csv(&[b"1,2,3,", &b"a".repeat(20_000_000)[..]].concat(), &["line 1: \"aaa", "aaa..."]);
     csv(&[b"1,2,3,", &b"9".repeat(20_000_000)[..]].concat(), &["line 1: \"999"]);
@@ -197,7 +197,7 @@ fn parts_of_films() {
         let files = [("parts/a.png.part.json", &whole[..]), ("parts/f-0003.rows-2-8.png", bytes)];
         refused_of(assemble, &files, &["f-0003.rows-2-8.png", part]);
     };
-    picture(&cut_png(8_192), "give a whole PNG");
+    picture(&cut_png(8_192), "render it again");
     picture(&black_png(8_192), "not the picture that was drawn");
 }
 

@@ -24,6 +24,7 @@ mod hostile;
 mod hostile_cost;
 mod hostile_documents;
 mod hostile_readers;
+mod hostile_shaders;
 mod interruption;
 mod kubernetes;
 mod lava;
@@ -31,6 +32,8 @@ mod lava_chapter_9;
 mod loops;
 mod meshes;
 mod outputs;
+#[cfg(unix)]
+mod outputs_read;
 mod pages;
 mod parts;
 mod passes;

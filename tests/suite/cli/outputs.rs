@@ -102,6 +102,29 @@ fn a_pipe_that_has_a_name_is_opened_once() {
     assert_schema(&serde_json::from_slice(&read.stdout).unwrap());
 }
 
+/// The system would wait for its reader, without a word and deaf to signals.
+#[test]
+fn a_pipe_that_no_one_reads_is_refused() {
+    let out = folder();
+    let pipe = out.path().join("pipe.png");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    long(out.path()).args("--image pipe.png").run().refused(2, &["pipe.png", "no one reads"]);
+    caustics("render --image pipe.png").inside(out.path()).tiny().run().refused(2, &["pipe.png", "no one reads"]);
+}
+
+/// A limit of the shell on the size of files would else end the program by a signal.
+#[test]
+fn a_file_beyond_the_limit_of_its_size_is_told() {
+    let out = folder();
+    let program = caustics("bench --quiet --json a.json").args(ONCE).tiny().for_shell();
+    let limited = format!("ulimit -f 1; exec {program}");
+    let ended = Command::new("sh").args(["-c", &limited]).current_dir(out.path()).stdin(Stdio::null()).output();
+    let ended = ended.unwrap();
+    let stderr = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!((ended.status.code(), stderr.lines().count()), (Some(2), 1), "{stderr}");
+    assert!(stderr.contains("a.json") && entries(out.path()).is_empty(), "{stderr}");
+}
+
 #[test]
 fn the_main_job_names_its_pictures_itself() {
     let out = folder();

@@ -135,6 +135,35 @@ fn what_does_not_belong_together_is_refused() {
 }
 
 #[test]
+fn parts_whose_pictures_do_not_go_together_are_refused() {
+    let out = folder();
+    let draw = |options: &str| small(options).inside(out.path()).run().succeeded();
+    let assemble = |options: &str| fumarole("assemble --quiet").args(options).inside(out.path()).run();
+    for (shard, name) in [("0/2", "x"), ("1/2", "y")] {
+        draw(&format!("--frame 0..4 --shard {shard} --image q/{name}.png"));
+    }
+    assemble("q --out film").refused(2, &["x-0000.png", "y-0002.png", "--image"]);
+    assemble("q --film a.y4m").succeeded();
+
+    for shard in ["0/2", "1/2"] {
+        draw(&format!("--frame 0..4 --shard {shard} --image p/x.png"));
+    }
+    let drawn = fs::read(out.path().join("p/x-0001.png")).unwrap();
+    assemble("p --out p").refused(2, &["x-0000.png", "it is read"]);
+    assert_eq!(fs::read(out.path().join("p/x-0001.png")).unwrap(), drawn);
+    let description = |name: &str| out.path().join("p").join(format!("{name}.png.part.json"));
+    let text = fs::read_to_string(description("x-0003")).unwrap();
+    fs::write(description("x-0003"), text.replace("x-0003.png", "x-0002.png")).unwrap();
+    assemble("p --out film").refused(2, &["x-0002.png.part.json", "x-0003.png.part.json", "both name the picture"]);
+    // A field that an option is named like.
+    fs::write(description("x-0003"), text.replace("\"device\":", "\"no-device\":")).unwrap();
+    assemble("p --out film").refused(2, &["missing field \"device\""]);
+    fs::write(description("x-0003"), text).unwrap();
+    fs::write(out.path().join("p/x-0001.png"), &drawn[..drawn.len() / 2]).unwrap();
+    assemble("p --out film").refused(2, &["x-0001.png", "render it again"]);
+}
+
+#[test]
 fn wrong_shards_and_rows_are_refused() {
     let out = folder();
     let inside =

@@ -1,11 +1,13 @@
-//! Random parameters from the ranges that the declarations state: every run ends with a picture or with one clear line,
-//! in bounded memory, and says so beforehand where it takes long.
+//! Random parameters from the ranges that the declarations state, in any variant and preset: every run ends with a picture or
+//! with one clear line, in bounded memory, and says so beforehand where it takes long. `FUMAROLE_CASES=100` draws more cases
+//! of each paper, `FUMAROLE_TEST_SEED` others.
 
 use std::convert::Infallible;
 use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use fumarole::measure::Variant;
 use fumarole::measure::parameter::{Parameter, Range};
 use fumarole::measure::study::{Study, Visitor};
 use fumarole::papers;
@@ -15,9 +17,8 @@ use super::program::{Program, folder, fumarole};
 use crate::common::beside_others;
 use crate::faults::Layer;
 
-/// Draws of each paper; more with this variable.
-const CASES_VARIABLE: &str = "FUMAROLE_CASES";
-const CASES: u32 = 6;
+/// Draws of each paper.
+const CASES: u64 = 6;
 
 /// Address space that no run may pass: the heap of lavapipe twice (the device's memory and what the host makes of it),
 /// the driver and its threads.
@@ -26,6 +27,9 @@ const LIMIT_KIB: u64 = 8 << 20;
 /// Longest run that said nothing beforehand.
 const SILENT: Duration = Duration::from_secs(60);
 
+/// Pictures that are drawn at once, of every shape.
+const SIZES: [&str; 6] = ["32x24", "1x1", "1x40", "40x1", "33x17", "8x64"];
+
 /// A case: what was typed.
 struct Cases(Vec<(&'static str, Vec<String>)>);
 
@@ -33,11 +37,20 @@ impl Visitor for Cases {
     type Error = Infallible;
 
     fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
-        let count = std::env::var(CASES_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(CASES);
-        let mut random = Random::new(u64::from(S::PAPER.as_bytes()[0]));
+        let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+        let seed = number("FUMAROLE_TEST_SEED").unwrap_or(1);
+        let mut random = Random::new(seed << 8 | u64::from(S::PAPER.as_bytes()[0]));
+        let presets = S::presets();
         let parameters: Vec<_> = S::parameters().into_iter().filter(|p| draw(p, &mut random).is_some()).collect();
-        for _ in 0..count {
-            let mut options: Vec<String> = vec![];
+        for _ in 0..number("FUMAROLE_CASES").unwrap_or(CASES) {
+            let mut choice = |of: usize| random.next_u32() as usize % of;
+            let variant = S::Variant::ALL[choice(S::Variant::ALL.len())];
+            let mut options = vec![format!("--variant={}", variant.as_str())];
+            // A preset's own scene takes long: seldom, and small.
+            options.push(match choice(8) {
+                0 => format!("--preset={}", presets[choice(presets.len())].name),
+                _ => format!("--size={}", SIZES[choice(SIZES.len())]),
+            });
             for _ in 0..=random.next_u32() % 3 {
                 let parameter = &parameters[random.next_u32() as usize % parameters.len()];
                 let option = format!("--{}=", parameter.name);
@@ -142,13 +155,13 @@ fn whatever_the_ranges_hold_ends_well() {
     for words in
         ["--density=1x67108864x1", "--splats=4000x4000", "--splat-radius=1", "--frame=2000 --particles=100", days]
     {
-        cases.0.push(("lava", words.split(' ').map(str::to_owned).collect()));
+        cases.0.push(("lava", words.split(' ').chain(["--size=32x24"]).map(str::to_owned).collect()));
     }
     let (mut drawn, mut failures) = (0, vec![]);
     for (paper, options) in &cases.0 {
         let out = folder();
         let picture = out.path().join("a.png");
-        let mut program = fumarole(paper).args("render --size 32x24").on_test_device().arg("--image").arg(&picture);
+        let mut program = fumarole(paper).args("render").on_test_device().arg("--image").arg(&picture);
         for option in options {
             program = program.arg(option);
         }

@@ -70,6 +70,19 @@ fn quiet_leaves_what_was_asked_for() {
     bench(out.path()).args("--quiet --planes-").run().misused(&["--planes-"]);
 }
 
+/// A substituted process is a pipe that is read.
+#[test]
+fn pipes_that_are_read_get_what_is_written() {
+    let out = folder();
+    let program = bench(out.path()).args("--quiet --csv").for_shell();
+    let mut bash = Command::new("bash");
+    bash.arg("-c").arg(format!("{program} >(cat >a.csv; touch ended) && until [ -e ended ]; do sleep 0.01; done"));
+    assert!(bash.current_dir(out.path()).stdin(Stdio::null()).status().unwrap().success());
+    assert!(fs::read_to_string(out.path().join("a.csv")).unwrap().starts_with("device,"));
+    let (stdout, stderr, code) = in_shell(&format!("{program} /dev/stdout | cat"), out.path());
+    assert!(stdout.starts_with("device,") && code == Some(0), "{stderr}");
+}
+
 fn in_shell(command: &str, folder: &Path) -> (String, String, Option<i32>) {
     let output = Command::new("sh").arg("-c").arg(command).current_dir(folder).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

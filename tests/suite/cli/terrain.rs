@@ -347,6 +347,9 @@ fn objects_stand_where_they_are_named() {
     let here = picture("box@0,3000,0,300", "here.png");
     assert!(here != picture("box@900,3000,0,300", "there.png"));
     assert!(here != picture("box@0,3000,30,300", "turned.png"));
+    let stray =
+        small("render --resolution 64 --image x.png --object box@0,9e6,0,300").inside(out.path()).run().succeeded();
+    assert!(stray.stderr.contains("--object 1 of 1, box, lies off the maps: it reaches from"), "{}", stray.stderr);
     let bench =
         small("bench --json --quiet --resolution 64 --variant gpu-fragment --object box@0,3000,0,300").args(ONCE);
     let run = bench.run().succeeded().json();
@@ -378,7 +381,7 @@ fn voids_lie_at_a_level_or_are_holes() {
     assert!(drawn.stderr.contains("15 samples, 60.0 %, are void: there is no terrain"), "{}", drawn.stderr);
     let drawn = small("render --image x.png --map undeclared.asc").inside(out.path()).run().succeeded();
     assert!(drawn.stderr.contains("5 samples are -9999 m, the next is 30 m: they look like voids"), "{}", drawn.stderr);
-    for voids in ["level", "level:", "level:nan", "sea"] {
+    for voids in ["level", "level:", "level:nan", "level:1e38", "sea"] {
         terrain("bench").arg(format!("--voids={voids}")).run().misused(&["--voids"]);
     }
 }
@@ -433,6 +436,8 @@ fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
     grid("none.asc", 0, 2, "");
     grid("large.asc", 65_537, 2, &"0 ".repeat(2 * 65_537));
     grid("void.asc", 2, 2, "NODATA_value -1\n-1 -1\n-1 -1\n");
+    grid("high.asc", 2, 2, "0 0\n0 1e30\n");
+    file(&out, "near.asc", "ncols 2\nnrows 2\ncellsize 1e-300\n0 0\n0 0\n");
     file(&out, "cut.tif", "II*\0");
     file(&out, "text.png", "no picture");
     file(&out, "map.xyz", "0 0 0");
@@ -449,6 +454,8 @@ fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
         ("none.asc", "by ncols and nrows of its header, it has 0 x 2 samples"),
         ("large.asc", "it has 65537 x 2 samples; a map has 2 to 65536 a side"),
         ("void.asc", "all its samples are void"),
+        ("high.asc", "row 1, column 1: its height is 1.0000000150474662e30 m, and heights are -1000000 to 1000000 m"),
+        ("near.asc", "cellsize: it makes samples lie 1e-300 x 1e-300 m apart; they have to lie 0.000001 to 1000000 m"),
         ("cut.tif", "cut.tif"),
         ("text.png", "neither TIFF nor PNG"),
         ("map.xyz", "unknown file ending \"xyz\""),

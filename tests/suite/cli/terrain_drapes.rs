@@ -35,6 +35,8 @@ fn a_drape_lies_where_its_world_file_says() {
     for (world_file, expected) in [
         ("0.025\n0\n0\n-0.05\n50\n40\n", ["beside the first map", "same coordinates"]),
         ("0.025\n0\n0\n0.05\n10\n40\n", ["photo.pgw", "north up"]),
+        ("1e-300\n0\n0\n-45\n10\n40\n", ["photo.pgw", "line 1: its step is 1e-300"]),
+        ("0.025\n0\n0\n-5e-12\n10\n40\n", ["photo.pgw", "line 4: its step is -5e-12"]),
     ] {
         file(&out, "photo.pgw", world_file);
         draw("--drape photo.png", "none.png").refused(2, &expected);

@@ -2,8 +2,9 @@
 //! chromium-common and with other systems' Chromium: `./setup.sh --tests` installs them. They have no manifests of use to
 //! others, so that these tests write their own.
 //!
-//! Messages known to be false: of Debian's layer, 1.3.239, none; of Chromium 156's those of its heuristic, which compares what
-//! shaders write by whole bindings (github.com/KhronosGroup/Vulkan-ValidationLayers/issues/11715).
+//! Messages known to be false: of Debian's layer, 1.3.239, one of a device without `maintenance4`, see `faults::masks`; of
+//! Chromium 156's those of its heuristic, which compares what shaders write by whole bindings
+//! (github.com/KhronosGroup/Vulkan-ValidationLayers/issues/11715).
 
 mod layer;
 mod options;

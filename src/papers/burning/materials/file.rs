@@ -11,6 +11,7 @@ use super::super::texture::LARGEST_SIDE;
 use super::{Kind, Materials, Substance};
 use crate::image::{Rgba8, read_png_within};
 use crate::measure::Error;
+use crate::report::text;
 use crate::scene::Mesh;
 use crate::{content, file};
 
@@ -97,10 +98,15 @@ fn colors_of(picture: &Rgba8, mesh: &Mesh) -> Vec<Vec3> {
     mesh.texture_coordinates.iter().map(color).collect()
 }
 
+/// Letters of the library's message.
+const MOST_QUOTED: usize = 300;
+
 fn parse(text: &str) -> Result<Document, Wrong> {
     let document: Document = toml::from_str(text).map_err(|error| {
         let reason = error.message().split_whitespace().collect::<Vec<_>>().join(" ").replace('`', "\"");
-        (error.span().map(|span| span.start), reason)
+        // It may quote the file.
+        let shown = text::one_line(&reason).chars().take(MOST_QUOTED).collect();
+        (error.span().map(|span| span.start), shown)
     })?;
     if document.material.is_empty() {
         return Err((None, "it has no [[material]]; add one".to_owned()));

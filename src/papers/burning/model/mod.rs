@@ -87,6 +87,10 @@ pub const NO_VERTEX: u32 = u32::MAX;
 /// 65,535 iterations.
 const MOST_AROUND: u32 = 8192;
 
+/// Vertices of an object whose parts fall, at most: to number the parts each of 256 threads walks twice over its share
+/// of them, 32,000 vertices, and the loops of a shader have 65,535 iterations all together, as above.
+const MOST_NUMBERED: u64 = 256 * 32_000;
+
 /// Fraction of volume over surface: with more, crumpled sides of a box that burns one after the other were seen to pass
 /// each other.
 pub const CHAR_FRACTION: f64 = 0.75;
@@ -95,7 +99,8 @@ impl Model {
     /// Prepares a mesh for a variant. `largest_bytes` is the device's longest storage buffer.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more triangles than that holds; [`Error::Pass`] for too many around one vertex.
+    /// [`Error::Limit`] for more triangles than that holds, or vertices than parts have; [`Error::Pass`] for too many
+    /// around one vertex.
     pub fn new(mesh: &Mesh, variant: Variant, parameters: &Parameters, largest_bytes: u64) -> Result<Self, Error> {
         // Three 32-bit indices a triangle are the longest list; an incidence holds a triangle's number times 4.
         let limit = (largest_bytes / 12).min(1 << 30);
@@ -120,6 +125,9 @@ impl Model {
         let triangles: Vec<[u32; 3]> =
             lattice.finest().iter().map(|t| t.map(|corner| lattice.welds[corner as usize])).collect();
         let positions = &lattice.positions;
+        if parameters.collapses(variant) {
+            check_numbered(positions.len() as u64)?;
+        }
         let incidence = Incidence::new(positions.len(), &triangles);
         if let Some((vertex, wanted)) = incidence.largest().filter(|&(_, triangles)| triangles > MOST_AROUND) {
             let [x, y, z] = positions[vertex as usize].to_array();
@@ -242,6 +250,14 @@ impl Variant {
     }
 }
 
+/// Refuses more vertices than the search for parts may walk over.
+fn check_numbered(wanted: u64) -> Result<(), Error> {
+    let object =
+        "parts that fall, by `collapse`, of the mesh, which `triangles` simplifies and `levels` divides".to_owned();
+    let error = Error::Limit { object, what: "number of vertices", wanted, limit: MOST_NUMBERED };
+    if wanted > MOST_NUMBERED { Err(error) } else { Ok(()) }
+}
+
 /// The lowest vertex, and the highest of what melts: it is to run down. Of several the first.
 fn ignition(positions: &[Vec3], variant: Variant) -> Vec3 {
     let height = |p: &&Vec3| if variant == Variant::Melting { -p.y } else { p.y };
@@ -298,4 +314,18 @@ fn base_points(grid: &Grid, positions: &[Vec3], rest_cells: &[u32]) -> Vec<u32> 
         }
     }
     nearest.into_iter().map(|(_, vertex)| vertex).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two walks and the sum over the workgroup stay below what lavapipe grants.
+    #[test]
+    fn parts_of_too_many_vertices_are_refused_in_one_line() {
+        const { assert!(2 * (MOST_NUMBERED / 256) + 8 < 65_535) };
+        assert!(check_numbered(MOST_NUMBERED).is_ok());
+        let line = check_numbered(MOST_NUMBERED + 1).unwrap_err().to_string();
+        assert!(line.contains("number of vertices") && line.contains("`triangles`") && !line.contains('\n'), "{line}");
+    }
 }

@@ -400,9 +400,11 @@ impl Parameters {
         self.lights.iter().try_for_each(validate_light)?;
         let background = self.background;
         ParameterError::check(is_color(background, 64.0), "background", components(background), "must be 0 to 64")?;
-        let last = u64::from(self.first_frame) + u64::from(self.frame_step) * 1000;
-        let range = "is too late; a scene has 16000000 frames";
-        ParameterError::check(last <= 16_000_000, "first-frame", self.first_frame, range)?;
+        let (first, step) = (u64::from(self.first_frame), u64::from(self.frame_step));
+        let is_late = first + 1000 > 16_000_000;
+        let (name, value) = if is_late { ("first-frame", first) } else { ("frame-step", step) };
+        let range = "leads too far; a scene has 16000000 frames, with a thousand steps from the first";
+        ParameterError::check(first + step * 1000 <= 16_000_000, name, value, range)?;
         ParameterError::check_camera(&self.camera)
     }
 }

@@ -110,8 +110,15 @@ impl VolumeFile {
         let scale = longest_m.map_or((room / half).min_element(), |side| f64::from(side) / (2.0 * half.max_element()));
         let turn = DMat3::from_rotation_y(f64::from(self.stand.map_or(0.0, |stand| stand.yaw_deg)).to_radians());
         let grid = Grid { steps_m: plain.steps_m.map(|step| turn * step * scale), ..plain };
+        let half = grid.half_extent_m();
+        if !half.to_array().iter().all(|half_m| (1e-4..=1e6).contains(half_m)) {
+            let sides = (2.0 * half).to_array().map(|side| format!("{side:.3e}")).join(" x ");
+            return Err(refused(format!(
+                "its box has {sides} metres, and a side is 0.0002 to 2000000; place it otherwise"
+            )));
+        }
         let base = self.stand.map_or(first.center - Vec3::Y * first.half_extent_m.y, |stand| stand.base_m);
-        let center = base + Vec3::Y * grid.half_extent_m().y as f32;
+        let center = base + Vec3::Y * half.y as f32;
         Ok(Placed { grid: Arc::new(grid), center })
     }
 }

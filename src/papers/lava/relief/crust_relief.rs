@@ -27,6 +27,7 @@ pub fn crust_relief(
         .with("carried", carried)
         .with("crust", crust)
         .with("toes", toes)
+        .with("crowded", sph.crowded())
         .with("heights", heights)
         .with("crust_temperatures", crust_temperatures)
         .with("crust_carried", crust_carried)

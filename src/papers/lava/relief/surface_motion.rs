@@ -22,5 +22,6 @@ pub fn surface_motion(
         .with("normal_height", surface)
         .with("bed", &sph.bed)
         .with("motion", motion)
+        .with("crowded", sph.crowded())
         .build(context.shaders)
 }

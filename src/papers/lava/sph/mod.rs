@@ -370,6 +370,11 @@ impl Sph {
         Ok((count > 0).then(|| sum / f64::from(count)))
     }
 
+    /// Words by which passes say that they left out particles that count, as [`Neighbours::crowded`].
+    pub(super) fn crowded(&self) -> &Arc<Buffer> {
+        &self.neighbours.crowded
+    }
+
     /// Fails where a device's loops left particles out.
     ///
     /// # Errors

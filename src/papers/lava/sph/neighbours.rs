@@ -18,6 +18,8 @@ use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView,
 const LISTED: u32 = 96;
 /// Particles in three cells above each other at most, as there.
 pub const MOST_IN_COLUMN: u32 = 7200;
+/// Of a stretch through the whole height at most, for the crust's relief, as in `lava/crust-relief.comp`.
+const MOST_OF_RELIEF: u32 = MOST_IN_COLUMN / 4;
 /// Particles in a row of a texture by cells, as there, and rows that every device has.
 const ROW: u32 = 1 << 12;
 /// Texels of a list.
@@ -35,7 +37,8 @@ pub struct Neighbours {
     counts: Arc<Buffer>,
     /// Drags of the viscosity, of each that is listed.
     pub drags: Arc<ImageView>,
-    crowded: Arc<Buffer>,
+    /// uint\[4\], as in `lava/crowded.glsl`: 1 where a pass left out particles that count.
+    pub crowded: Arc<Buffer>,
 }
 
 /// Of so many particles those with a list.
@@ -80,7 +83,8 @@ impl Neighbours {
         let desc = BufferDesc::new(context.name("neighbour-counts"), 4 * u64::from(particles));
         let counts = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
             .map_err(|error| error.set_by("particles"))?;
-        let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
+        let crowded =
+            context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 4]))?;
         Ok(Neighbours {
             began: sph_neighbours(context.shaders, sort, (&lists, &counts), began, &crowded)?,
             predicted: sph_neighbours_predicted(context.shaders, sort, (&lists, &counts), predicted)?,
@@ -96,19 +100,24 @@ impl Neighbours {
         over_cells(name, shader, sort).with("neighbours", &self.lists).with("neighbour_counts", &self.counts)
     }
 
-    /// Fails where a device's loops left particles out.
+    /// Fails where particles that count were left out, since a device would end the loops over them.
     ///
     /// # Errors
     /// [`Error::Pass`] for more particles in one place than a loop may take; errors of the Vulkan layer.
     pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
-        let bytes = read_buffer(device, &self.crowded)?;
-        if bytes.iter().all(|byte| *byte == 0) {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(device, &self.crowded)?);
+        let (shorter, smaller) =
+            ("a shorter `time-step` or fewer `particles`", "fewer `particles` or a smaller `space`");
+        let passes = [
+            ("sph-neighbours", MOST_IN_COLUMN, "in three cells above each other", shorter),
+            ("surface-temperature", MOST_IN_COLUMN, "near the surface in one column of cells", smaller),
+            ("surface-motion", MOST_IN_COLUMN, "in one column of cells", smaller),
+            ("crust-relief", MOST_OF_RELIEF, "near the surface in one column of cells", smaller),
+        ];
+        let Some(((pass, most, place, remedy), _)) = passes.into_iter().zip(words).find(|(_, word)| *word != 0) else {
             return Ok(());
-        }
-        let problem = format!(
-            "more than {MOST_IN_COLUMN} particles lie in three cells above each other, beyond which drivers end loops; take a \
-             shorter `time-step` or fewer `particles`"
-        );
-        Err(Error::Pass { pass: "sph-neighbours".to_owned(), problem })
+        };
+        let problem = format!("more than {most} particles lie {place}, beyond which drivers end loops; take {remedy}");
+        Err(Error::Pass { pass: pass.to_owned(), problem })
     }
 }

@@ -6,7 +6,7 @@ use super::over_cells;
 use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
-/// Makes the pass; `crowded` takes a 1 where a loop was cut off.
+/// Makes the pass; `crowded` takes a 1 in its first word where a loop was cut off.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.

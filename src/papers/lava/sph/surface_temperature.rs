@@ -50,6 +50,7 @@ impl SurfaceTemperature {
             .with("carried", &sph.rock.by_cells)
             .with("surface_carried", &carried)
             .with("face", &face)
+            .with("crowded", sph.crowded())
             .build(context.shaders)?;
         Ok(SurfaceTemperature { pass, constants: sph.constants, temperatures, carried })
     }

@@ -21,14 +21,16 @@ const LEAST_BYTES: usize = 8;
 type Refused = (usize, String);
 
 /// Adds the bodies of a CSV file: six numbers a line for a segment, four for a sphere, as the options have them. Empty lines, those
-/// that begin with `#`, and a heading in the first are passed over.
+/// that begin with `#`, and a heading in the first are passed over; fields may stand in quotes.
 ///
 /// # Errors
 /// [`Error::Input`] for a file that cannot be read and for the first line that is no body, with its number.
 pub fn read(path: &Path, all: &mut Vec<Body>) -> Result<(), Error> {
     let failed = |reason: String| Error::Input(format!("`bodies` {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
-    let pieces = pieces(&text);
+    // Some editors put a mark of UTF-8 before a text.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let pieces = pieces(text);
     let ends: usize = pieces.par_iter().map(|piece| piece.bytes().filter(|&byte| byte == b'\n').count()).sum();
     // A body takes seven times the bytes of the shortest line: room for no more than there can be, and a few pieces at once
     // beside it.
@@ -78,16 +80,28 @@ fn bodies(piece: &str, is_first: bool) -> Result<Vec<Body>, Refused> {
     Ok(bodies)
 }
 
-/// No field is a number.
+/// No field is a number, and one is a word: what has digits and separators alone is meant as a body.
 fn is_heading(line: &str) -> bool {
-    line.split(',').all(|field| field.trim().parse::<f64>().is_err())
+    let is_word = |field: &str| field.starts_with(char::is_alphabetic);
+    line.split(',').all(|field| bare(field).parse::<f64>().is_err()) && line.split(',').map(bare).any(is_word)
+}
+
+/// A field without blanks and the quotes around it.
+fn bare(field: &str) -> &str {
+    let field = field.trim();
+    field.strip_prefix('"').and_then(|field| field.strip_suffix('"')).map_or(field, str::trim)
 }
 
 fn body(line: &str) -> Result<Body, String> {
     let body = match line.split(',').count() {
         6 => Body::from(&numbers::<6>(line)?),
         4 => Body::from(&numbers::<4>(line)?),
-        count => return Err(format!("it has {count} fields; a segment has six numbers, a sphere four")),
+        count => {
+            let fields = if count == 1 { "field" } else { "fields" };
+            return Err(format!(
+                "it has {count} {fields}; a segment has six numbers, a sphere four, with commas between"
+            ));
+        }
     };
     body.check().map_err(|error| error.to_string())?;
     Ok(body)
@@ -97,14 +111,70 @@ fn body(line: &str) -> Result<Body, String> {
 fn numbers<const N: usize>(line: &str) -> Result<[f64; N], String> {
     let mut numbers = [0.0; N];
     for (number, field) in numbers.iter_mut().zip(line.split(',')) {
-        *number = f64::parse(&[OsStr::new(field.trim())])?;
+        *number = f64::parse(&[OsStr::new(bare(field))]).map_err(|reason| shortened(field).unwrap_or(reason))?;
     }
     Ok(numbers)
+}
+
+/// The reason why a field too long to be shown is no number.
+fn shortened(field: &str) -> Option<String> {
+    const LONGEST: usize = 40;
+    let shown: String = bare(field).chars().take(LONGEST).collect();
+    (shown.len() < bare(field).len()).then(|| format!("{shown:?}... is not a finite number"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Bodies of a text, as a file of it is read.
+    fn of(text: &str) -> Result<Vec<Body>, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("bodies.csv");
+        std::fs::write(&path, text).expect("room for the file");
+        let mut all = vec![];
+        read(&path, &mut all).map(|()| all).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_heading_has_a_word_and_no_number() {
+        let spheres = |count: usize| Ok(vec![Body::from(&[0.0, 100.0, 0.0, 5.0]); count]);
+        let plain = "0,100,0,5\n";
+        for (first, count) in [
+            ("", 1),
+            (plain, 2),
+            ("\"0\",\"100\",\"0\",\"5\"\n", 2),
+            (" \"0\" , 100,\" 0 \",5\r\n", 2),
+            ("x,y,z,r\n", 1),
+            ("\"x\",\"y\",\"z\",\"r\"\r\n", 1),
+            ("\"\",y,\"z\",\n", 1),
+            ("länge,y,z,r\n", 1),
+            ("x;y;z;r\n", 1),
+            ("#0;1\n", 1),
+        ] {
+            for mark in ["", "\u{feff}"] {
+                assert_eq!(of(&format!("{mark}{first}{plain}")), spheres(count), "{mark:?}{first:?}");
+            }
+        }
+        let long = format!("{},1,2,3\n", "7x".repeat(1 << 19));
+        for (text, parts) in [
+            ("0;100;0;5\n0,100,0,5\n", ["line 1: it has 1 field;", "commas"]),
+            ("\"0;100;0;5\"\n", ["line 1: it has 1 field;", "commas"]),
+            ("1 2 3 4\n", ["line 1: it has 1 field;", "commas"]),
+            ("0,,0,5\n", ["line 1: ", "finite number"]),
+            ("nan,0,0,5\n", ["line 1: ", "nan"]),
+            ("nan,inf,nan,nan\n", ["line 1: ", "nan"]),
+            (",,,\n", ["line 1: ", "finite number"]),
+            ("0,100,0,5\nx,y,z,r\n", ["line 2: ", "\"x\""]),
+            ("x,y,z,r\n", ["it has no body", "X,Y,Z,R"]),
+            ("0,1e300,0,5\n", ["line 1: ", "1e300"]),
+            (&long, ["line 1: ", "... is not a finite number"]),
+        ] {
+            let reason = of(text).expect_err("no body");
+            let said = reason.split_once("bodies.csv").map_or("", |(_, said)| said);
+            assert!(parts.iter().all(|part| said.contains(part)) && said.len() < 160, "{reason}");
+        }
+    }
 
     /// Of a file of several pieces every line comes once, and one that is no body has its number in the file.
     #[test]

@@ -13,6 +13,7 @@ use crate::measure::ParameterError;
 use crate::measure::experiment::json_text;
 use crate::measure::study::Study;
 use crate::papers::terrain::{Collider, Contact, Inputs, Surface, void_warnings};
+use crate::scene::shown;
 
 /// A coordinate's and a radius' largest value, metres.
 const FAR_M: f64 = 1.0e8;
@@ -87,10 +88,12 @@ impl std::fmt::Display for Body {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Body::Segment { from, to } => {
-                write!(formatter, "{},{},{},{},{},{}", from.x, from.y, from.z, to.x, to.y, to.z)
+                let ([x, y, z], [to_x, to_y, to_z]) = (from.to_array().map(shown), to.to_array().map(shown));
+                write!(formatter, "{x},{y},{z},{to_x},{to_y},{to_z}")
             }
             Body::Sphere { center, radius_m } => {
-                write!(formatter, "{},{},{},{radius_m}", center.x, center.y, center.z)
+                let [x, y, z] = center.to_array().map(shown);
+                write!(formatter, "{x},{y},{z},{}", shown(*radius_m))
             }
         }
     }
@@ -194,6 +197,18 @@ mod tests {
             let listed: Vec<Value> = collisions.iter().map(Collision::json).collect();
             let whole = json_text(&json!({"collisions": listed, "warnings": warnings})).unwrap();
             assert_eq!(record(&collisions, &warnings).unwrap(), whole);
+        }
+    }
+
+    #[test]
+    fn bodies_far_away_are_refused_in_a_short_line() {
+        for body in [
+            Body::from(&[0.0, 1e300, 0.0, 5.0]),
+            Body::from(&[0.0, 1.0, 0.0, 1e300]),
+            Body::from(&[1e300, 1e300, 1e300, -1e300, 0.0, 1e-300]),
+        ] {
+            let message = body.check().unwrap_err().to_string();
+            assert!(message.contains("1e300") && message.len() < 120, "{message}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 pub mod bodies;
 pub mod collisions;
-mod decimals;
+pub(super) mod decimals;
 pub mod figures;
 mod flight;
 pub mod table;

@@ -4,6 +4,7 @@ use crate::scene::binary::allocate;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
+use crate::scene::height_map::shown;
 use glam::DVec2;
 use std::io::BufRead;
 
@@ -12,7 +13,7 @@ const LONGEST_TOKEN: usize = 64;
 
 /// Reads an Esri ASCII grid: lines of a keyword and a number, then the heights, row by row from the north.
 pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) -> Result<HeightMap, Fault> {
-    let mut tokens = Tokens { input, line: 1 };
+    let mut tokens = Tokens { input, line: 1, is_first: true };
     let mut header = Header::default();
     let first = loop {
         let Some(token) = tokens.next()? else {
@@ -32,6 +33,7 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
         }
     };
     let (width, height) = header.size(size_bytes)?;
+    let placement = header.placement(width, height, unit)?;
     let count = width as usize * height as usize;
     let mut values = allocate::<f32>(count)?;
     let no_data = header.no_data;
@@ -53,7 +55,6 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
             tokens.fault(format!("more than the {count} heights that ncols x nrows = {width} x {height} makes"))
         );
     }
-    let placement = header.placement(width, height, unit);
     Grid { width, height, values, integral, no_data, placement }.into_map()
 }
 
@@ -94,7 +95,7 @@ impl Header {
             return Err(tokens.fault(format!("{key} is given twice")));
         }
         if matches!(key.as_str(), "cellsize" | "dx" | "dy") && !(value.is_finite() && value > 0.0) {
-            return Err(tokens.fault(format!("{key} is {value}; it has to be positive")));
+            return Err(tokens.fault(format!("{key} is {}; it has to be positive", shown(value))));
         }
         Ok(())
     }
@@ -104,7 +105,7 @@ impl Header {
         let whole = |reason: String| Fault::new(Place::Whole, reason);
         let side = |value: Option<f64>, key: &str| match value {
             Some(side) if side.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&side) => Ok(side as u32),
-            Some(side) => Err(whole(format!("{key} is {side}; it has to be a whole number of samples"))),
+            Some(side) => Err(whole(format!("{key} is {}; it has to be a whole number of samples", shown(side)))),
             None => Err(whole(format!("the header has no {key}"))),
         };
         let (width, height) = (side(self.columns, "ncols")?, side(self.rows, "nrows")?);
@@ -121,13 +122,14 @@ impl Header {
         Ok((width, height))
     }
 
-    fn placement(&self, width: u32, height: u32, unit: Option<Unit>) -> Placement {
-        let Some(x) = self.step[0].or(self.step[1]) else { return Placement::Unknown };
+    fn placement(&self, width: u32, height: u32, unit: Option<Unit>) -> Result<Placement, Fault> {
+        let Some(x) = self.step[0].or(self.step[1]) else { return Ok(Placement::Unknown) };
+        let field = if self.step[1].is_some() { "dx, dy" } else { "cellsize" };
         let step = DVec2::new(x, self.step[1].unwrap_or(x));
         let west = self.west[1].or(self.west[0].map(|edge| edge + step.x / 2.0));
         let south = self.south[1].or(self.south[0].map(|edge| edge + step.y / 2.0));
         let north_west = west.zip(south).map(|(west, south)| DVec2::new(west, south + step.y * f64::from(height - 1)));
-        MapCoordinates { north_west, step, width, height }.placed(unit)
+        MapCoordinates { north_west, step, width, height, field }.placed(unit)
     }
 }
 
@@ -136,10 +138,23 @@ struct Tokens<R> {
     input: R,
     /// Line of the token read last, from 1.
     line: usize,
+    /// No token is read yet.
+    is_first: bool,
 }
 
 impl<R: BufRead> Tokens<R> {
     fn next(&mut self) -> Result<Option<String>, Fault> {
+        let token = self.word()?;
+        let is_first = std::mem::take(&mut self.is_first);
+        // Some editors put a mark of UTF-8 before a text.
+        match token.as_deref().and_then(|token| token.strip_prefix('\u{feff}')).filter(|_| is_first) {
+            Some("") => self.word(),
+            Some(rest) => Ok(Some(rest.to_owned())),
+            None => Ok(token),
+        }
+    }
+
+    fn word(&mut self) -> Result<Option<String>, Fault> {
         let mut token = Vec::new();
         loop {
             let place = Place::Line(self.line);
@@ -200,6 +215,14 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_of_utf_8_before_the_text_is_passed_over() {
+        for mark in ["\u{feff}", "\u{feff}\r\n", "\n\u{feff}"] {
+            let map = read(&format!("{mark}ncols 2\nnrows 2\ncellsize 7\n1 2 3 4\n")).unwrap();
+            assert_eq!((map.spacing_m(), map.height_m(1, 1)), (DVec2::splat(7.0), 4.0), "{mark:?}");
+        }
+    }
+
+    #[test]
     fn fractions_and_wide_ranges_stay_float() {
         for heights in ["0.5 1 2 3", "0 1 2 65536"] {
             let map = read(&format!("ncols 2\nnrows 2\ncellsize 1\n{heights}\n")).unwrap();
@@ -245,6 +268,14 @@ mod tests {
             (&format!("{head}1 2\n3 x"), "line 4: height is \"x\", not a number"),
             (&format!("{head}1 2\n3 nan"), "row 1, column 1: its height is NaN, not a finite number"),
             (&format!("{head}1 2\n3 1e39"), "row 1, column 1: its height is inf"),
+            (&format!("{head}1 2\n3 1e30"), "row 1, column 1: its height is 1.0000000150474662e30 m, and heights are"),
+            (
+                &format!("{head}cellsize 1e-300\n1 2 3 4"),
+                "cellsize: it makes samples lie 1e-300 x 1e-300 m apart; they",
+            ),
+            (&format!("{head}dx 30\ndy 1e300\n1 2 3 4"), "dx, dy: it makes samples lie 30 x 1e300 m apart; they"),
+            (&format!("{head}cellsize -1e300\n1 2 3 4"), "line 3: cellsize is -1e300; it has"),
+            ("ncols 1e300\nnrows 2\n1 2", "ncols is 1e300; it has to be a whole number"),
             (&format!("{head}nodata_value 7\n7 7\n7 7"), "all its samples are void"),
             (&"x".repeat(1_000), "line 1: a word of more than 64 bytes"),
         ] {

@@ -1,14 +1,17 @@
 use super::check_compressed;
+use super::geotiff_check::check_samples;
 use super::placement::{MapCoordinates, Unit};
+use super::stored::Stored;
 use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
+use crate::scene::height_map::shown;
 use glam::DVec2;
 use std::io::{Read, Seek};
 use tiff::ColorType;
-use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 /// The largest map in 64 bits a sample.
@@ -21,7 +24,7 @@ const GEO_DOUBLE_PARAMETERS: Tag = Tag::Unknown(34_736);
 /// A picture of a TIFF or BigTIFF, with what the tags of GeoTIFF and GDAL say of it.
 pub(super) struct Picture<R: Read + Seek> {
     /// At the picture.
-    pub(super) decoder: Decoder<R>,
+    pub(super) decoder: Decoder<Stored<R>>,
     /// Of a sample.
     pub(super) bits: u8,
     /// Samples in a row.
@@ -43,6 +46,7 @@ impl<R: Read + Seek> Picture<R> {
         limits.decoding_buffer_size = MAX_BYTES;
         limits.intermediate_buffer_size = MAX_BYTES;
         limits.ifd_value_size = MAX_TAG_BYTES;
+        let input = Stored::new(input).map_err(|error| Fault::foreign(Place::Whole, &error))?;
         let mut decoder = Decoder::new(input).map_err(foreign)?.with_limits(limits);
         let whole = decoder.dimensions().map_err(foreign)?;
         if overview == 0 {
@@ -56,7 +60,7 @@ impl<R: Read + Seek> Picture<R> {
         }
         let ((width, height), bits) = check_shape(&mut decoder, size_bytes)?;
         let placement = match coordinates {
-            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed(unit),
+            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed(unit)?,
             None => Placement::Unknown,
         };
         Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes })
@@ -94,9 +98,11 @@ fn find_overview(decoder: &mut Decoder<impl Read + Seek>, overview: u32) -> Resu
 
 /// Reads the first picture, or an overview, in strips or tiles.
 pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> Result<HeightMap, Fault> {
-    let Picture { mut decoder, bits, width, height, no_data, placement, .. } =
-        Picture::open(size_bytes, input, overview)?;
-    let source = Source { width, height, no_data, placement };
+    let mut picture = Picture::open(size_bytes, input, overview)?;
+    let Picture { bits, width, height, .. } = picture;
+    if !matches!(bits, 8 | 16 | 32 | 64) {
+        return Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")));
+    }
     let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
     if raw_bytes > MAX_BYTES as u64 {
         let reason = format!(
@@ -108,12 +114,11 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> 
         return Err(fault("ImageWidth, ImageLength, BitsPerSample", reason));
     }
     if raw_bytes > spare_bytes(size_bytes) {
-        check_chunks(&mut decoder, size_bytes, bits)?;
+        check_samples(&mut picture)?;
     }
+    let Picture { mut decoder, no_data, placement, .. } = picture;
+    let source = Source { width, height, no_data, placement };
     match decoder.read_image().map_err(foreign)? {
-        DecodingResult::U8(_) | DecodingResult::I8(_) if bits != 8 => {
-            Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")))
-        }
         DecodingResult::U8(values) => source.map(values, true),
         DecodingResult::I8(values) => source.map(values, true),
         DecodingResult::U16(values) => source.map(values, true),
@@ -126,24 +131,6 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> 
         DecodingResult::F32(values) => source.map(values, false),
         DecodingResult::F64(values) => source.map(values, false),
     }
-}
-
-/// Decodes all strips or tiles of a file that could be far larger than it is, one by one, before any is kept.
-fn check_chunks(decoder: &mut Decoder<impl Read + Seek>, size_bytes: u64, bits: u8) -> Result<(), Fault> {
-    let (width, height) = decoder.chunk_dimensions();
-    let chunk_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
-    if chunk_bytes > spare_bytes(size_bytes) {
-        let reason = format!(
-            "it packs {chunk_bytes} bytes into one strip of a file of {size_bytes}; write it anew in tiles, with \
-             gdal_translate -co TILED=YES"
-        );
-        return Err(fault("RowsPerStrip", reason));
-    }
-    let count = match decoder.get_chunk_type() {
-        ChunkType::Strip => decoder.strip_count(),
-        ChunkType::Tile => decoder.tile_count(),
-    };
-    (0..count.map_err(foreign)?).try_for_each(|chunk| decoder.read_chunk(chunk).map(drop)).map_err(foreign)
 }
 
 struct Source {
@@ -189,27 +176,27 @@ impl<R: Read + Seek> Tags<'_, R> {
         let keys = self.keys()?;
         // A tie point names the sample's corner, or with PixelIsPoint its centre.
         let offset = if keys.raster_type == Some(2) { 0.0 } else { 0.5 };
-        let (corner, step) = if let Some(scale) = self.numbers(Tag::ModelPixelScaleTag, "ModelPixelScale", 2)? {
+        let (field, corner, step) = if let Some(scale) = self.numbers(Tag::ModelPixelScaleTag, "ModelPixelScale", 2)? {
             let step = DVec2::new(scale[0], scale[1]);
             let corner = self
                 .numbers(Tag::ModelTiepointTag, "ModelTiepoint", 6)?
                 .map(|tie| DVec2::new(tie[3] - tie[0] * step.x, tie[4] + tie[1] * step.y));
-            (corner, step)
+            ("ModelPixelScale", corner, step)
         } else if let Some(matrix) = self.numbers(Tag::ModelTransformationTag, "ModelTransformation", 16)? {
             if matrix[1] != 0.0 || matrix[4] != 0.0 {
                 let reason = "it turns the map; write one with north up with gdalwarp";
                 return Err(fault("ModelTransformation", reason));
             }
-            (Some(DVec2::new(matrix[3], matrix[7])), DVec2::new(matrix[0], -matrix[5]))
+            ("ModelTransformation", Some(DVec2::new(matrix[3], matrix[7])), DVec2::new(matrix[0], -matrix[5]))
         } else {
             return Ok(None);
         };
         if !(step.is_finite() && step.min_element() > 0.0) {
-            let reason = format!("it makes steps of {} and {}; both have to be positive", step.x, step.y);
-            return Err(fault("ModelPixelScale", reason));
+            let [x, y] = step.to_array().map(shown);
+            return Err(fault(field, format!("it makes steps of {x} and {y}; both have to be positive")));
         }
         let north_west = corner.map(|corner| corner + DVec2::new(step.x, -step.y) * offset);
-        Ok(Some((MapCoordinates { north_west, step, width, height }, keys.unit)))
+        Ok(Some((MapCoordinates { north_west, step, width, height, field }, keys.unit)))
     }
 
     /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the

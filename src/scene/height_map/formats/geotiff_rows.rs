@@ -11,7 +11,7 @@ use super::{malformed, open_tiff};
 use crate::scene::Error;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
-use crate::scene::height_map::grid::{Placement, fits_steps, is_void, not_finite};
+use crate::scene::height_map::grid::{Placement, fits_steps, is_height, is_void, no_height};
 use crate::scene::height_map::void_samples::{Suspect, Watch};
 use crate::scene::height_map::{HeightMap, Rows, Samples};
 
@@ -50,8 +50,8 @@ impl GeoTiffRows {
                         is_void_free = false;
                         return Ok(false);
                     }
-                    if !(value as f32).is_finite() {
-                        return Err(malformed(path, not_finite(row, column, value)));
+                    if !is_height(value) {
+                        return Err(malformed(path, no_height(row, column, value)));
                     }
                     (low, high) = (low.min(value), high.max(value));
                     watch.see(value);

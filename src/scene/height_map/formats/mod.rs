@@ -4,11 +4,13 @@
 mod ascii_grid;
 mod esri;
 mod geotiff;
+mod geotiff_check;
 mod geotiff_rows;
 mod hgt;
 mod hgt_folder;
 mod placement;
 mod png;
+mod stored;
 pub(in crate::scene) mod vrt;
 
 pub(super) use self::geotiff_rows::GeoTiffRows;
@@ -20,6 +22,8 @@ use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 const KNOWN_ENDINGS: &str = ".hgt, .hdr, .bil, .bsq, .dem, .asc, .tif, .tiff, .png, .vrt";
+/// Of UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// TIFF and BigTIFF, little and big endian.
 const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
@@ -128,15 +132,16 @@ fn check_compressed(size_bytes: u64, (width, height): (u32, u32), bits: u32) -> 
     Err(format!("its size is {size_bytes} bytes, too few for {width} x {height} samples; it is cut off"))
 }
 
-/// The text of a small file beside a map, such as its header.
-fn read_text(file: File, path: &Path) -> Result<String, Error> {
+/// The text of a small file beside a map or a picture, such as its header, without the mark of UTF-8 that some editors put
+/// before it.
+pub(in crate::scene) fn read_text(file: File, path: &Path) -> Result<String, Error> {
     /// Headers and projections are a few lines.
     const MAX_TEXT_BYTES: u64 = 1 << 20;
     let mut bytes = Vec::new();
     file.take(MAX_TEXT_BYTES)
         .read_to_end(&mut bytes)
         .map_err(|source| Error::Read { path: path.to_owned(), source })?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(String::from_utf8_lossy(bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes)).into_owned())
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Spacing of the samples of a raster with map coordinates.
 
 use super::read_text;
-use crate::scene::error::Asset;
+use crate::scene::error::{Asset, Fault};
 use crate::scene::height_map::grid::Placement;
 use crate::scene::height_map::{Coordinates, Geographic};
 use crate::scene::{Error, file};
@@ -30,6 +30,8 @@ pub(super) struct MapCoordinates {
     pub(super) width: u32,
     /// Number of rows.
     pub(super) height: u32,
+    /// Name of what states the steps in the file.
+    pub(super) field: &'static str,
 }
 
 impl MapCoordinates {
@@ -38,12 +40,15 @@ impl MapCoordinates {
         let parts = DVec2::new(self.width.into(), self.height.into()) / DVec2::new(width.into(), height.into());
         let step = self.step * parts;
         let inwards = (step - self.step) / 2.0 * DVec2::new(1.0, -1.0);
-        MapCoordinates { north_west: self.north_west.map(|first| first + inwards), step, width, height }
+        MapCoordinates { north_west: self.north_west.map(|first| first + inwards), step, width, height, ..self }
     }
 
     /// The placement in the unit given; without one, coordinates that can be longitude and latitude in steps below 0.1
     /// degrees are taken for degrees, as GTOPO30 has them, and all others for metres.
-    pub(super) fn placed(&self, unit: Option<Unit>) -> Placement {
+    ///
+    /// # Errors
+    /// Steps that make samples lie outside [`HeightMap::SPACING_M`](crate::scene::HeightMap::SPACING_M).
+    pub(super) fn placed(&self, unit: Option<Unit>) -> Result<Placement, Fault> {
         let corner = self.north_west.filter(|corner| {
             let cells = DVec2::new(self.width.into(), self.height.into()) - 1.0;
             let south_east = *corner + DVec2::new(1.0, -1.0) * self.step * cells;
@@ -54,7 +59,7 @@ impl MapCoordinates {
             Some(_) if self.step.max_element() < COARSEST_DEG => Unit::Degrees,
             _ => Unit::Metres(1.0),
         };
-        match (unit.unwrap_or_else(guess), corner) {
+        let placement = match (unit.unwrap_or_else(guess), corner) {
             (Unit::Metres(metres), _) => {
                 let coordinates = self.north_west.map(|north_west| Coordinates { north_west, step: self.step });
                 Placement::Metres(self.step * metres, coordinates)
@@ -63,8 +68,9 @@ impl MapCoordinates {
                 Placement::Degrees(Geographic { west_deg: corner.x, north_deg: corner.y, step_deg: self.step })
             }
             // Degrees somewhere off the Earth tell no latitude.
-            (Unit::Degrees, None) => Placement::Unknown,
-        }
+            (Unit::Degrees, None) => return Ok(Placement::Unknown),
+        };
+        placement.check(self.height, self.field).map(|()| placement)
     }
 }
 
@@ -119,7 +125,7 @@ mod tests {
     #[test]
     fn parts_of_an_area_have_their_middles() {
         let north_west = Some(DVec2::new(100.5, 39.5));
-        let fine = || MapCoordinates { north_west, step: DVec2::ONE, width: 8, height: 12 };
+        let fine = || MapCoordinates { north_west, step: DVec2::ONE, width: 8, height: 12, field: "cellsize" };
         let coarse = fine().in_parts(4, 3);
         assert_eq!((coarse.north_west, coarse.step), (Some(DVec2::new(101.0, 38.0)), DVec2::new(2.0, 4.0)));
         let same = fine().in_parts(8, 12);
@@ -133,19 +139,50 @@ mod tests {
             step: DVec2::splat(step),
             width: 100,
             height: 100,
+            field: "cellsize",
         };
         let degrees = grid(139.99, 40.0, 1.0 / 120.0);
-        assert!(matches!(degrees.placed(None), Placement::Degrees(place) if place.north_deg == 40.0));
+        assert!(matches!(degrees.placed(None), Ok(Placement::Degrees(place)) if place.north_deg == 40.0));
         let whole_earth = MapCoordinates { width: 36, height: 18, ..grid(-175.0, 85.0, 10.0) };
-        assert!(matches!(whole_earth.placed(Some(Unit::Degrees)), Placement::Degrees(_)));
+        assert!(matches!(whole_earth.placed(Some(Unit::Degrees)), Ok(Placement::Degrees(_))));
         let own = |grid: &MapCoordinates| grid.north_west.map(|north_west| Coordinates { north_west, step: grid.step });
         let doubled = Placement::Metres(DVec2::splat(1.0 / 60.0), own(&degrees));
-        assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), doubled);
+        assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), Ok(doubled));
         for metres in [grid(500_000.0, 4_000_000.0, 30.0), grid(0.0, 50.0, 1.0), grid(10.0, 90.0, 20.0)] {
-            assert_eq!(metres.placed(None), Placement::Metres(metres.step, own(&metres)));
+            assert_eq!(metres.placed(None), Ok(Placement::Metres(metres.step, own(&metres))));
         }
-        assert_eq!(grid(900.0, 0.0, 0.01).placed(Some(Unit::Degrees)), Placement::Unknown);
+        assert_eq!(grid(900.0, 0.0, 0.01).placed(Some(Unit::Degrees)), Ok(Placement::Unknown));
         let nowhere = MapCoordinates { north_west: None, ..grid(0.0, 0.0, 0.01) };
-        assert_eq!(nowhere.placed(None), Placement::Metres(nowhere.step, None));
+        assert_eq!(nowhere.placed(None), Ok(Placement::Metres(nowhere.step, None)));
+    }
+
+    #[test]
+    fn samples_lie_neither_too_near_nor_too_far_apart() {
+        let grid = |step: f64| MapCoordinates {
+            north_west: Some(DVec2::new(7.0, 45.0)),
+            step: DVec2::splat(step),
+            width: 4,
+            height: 4,
+            field: "cellsize",
+        };
+        for (step, unit, is_good) in [
+            (1e-6, Unit::Metres(1.0), true),
+            (1e6, Unit::Metres(1.0), true),
+            (1e-300, Unit::Metres(1.0), false),
+            (1e300, Unit::Metres(1.0), false),
+            (1e300, Unit::Metres(1e300), false),
+            (5e5, Unit::Metres(3.0), false),
+            (1e-11, Unit::Degrees, false),
+            (1e-10, Unit::Degrees, true),
+            (20.0, Unit::Degrees, true),
+        ] {
+            let placed = grid(step).placed(Some(unit));
+            assert_eq!(placed.is_ok(), is_good, "{step:?} {unit:?}");
+            let Err(fault) = placed else { continue };
+            let message = fault.to_string();
+            let is_said = message.starts_with("cellsize: it makes samples lie ")
+                && message.contains("; they have to lie 0.000001 to 1000000");
+            assert!(is_said && message.len() < 160, "{message}");
+        }
     }
 }

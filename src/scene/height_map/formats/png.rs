@@ -2,7 +2,7 @@ use super::check_compressed;
 use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
-use crate::scene::height_map::grid::{Grid, Placement};
+use crate::scene::height_map::grid::{Grid, Placement, all_void};
 use crate::scene::height_map::map::check_size;
 use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::io::{BufRead, Seek};
@@ -17,7 +17,15 @@ pub(super) fn parse(size_bytes: u64, mut input: impl BufRead + Seek) -> Result<H
     let raw_bytes = reader.output_buffer_size().unwrap_or(0);
     // Nothing is kept of a file that could be far larger than it is before all of it is seen to be whole.
     if raw_bytes as u64 > spare_bytes(size_bytes) {
-        while reader.next_interlaced_row().map_err(foreign)?.is_some() {}
+        let mut has_height = color == ColorType::Grayscale;
+        let (pixel_bytes, alpha_at) = if depth == BitDepth::Sixteen { (4, 2) } else { (2, 1) };
+        while let Some(row) = reader.next_interlaced_row().map_err(foreign)? {
+            let is_seen = |pixel: &[u8]| pixel[alpha_at..].iter().any(|byte| *byte != 0);
+            has_height = has_height || row.data().chunks_exact(pixel_bytes).any(is_seen);
+        }
+        if !has_height {
+            return Err(all_void());
+        }
         drop(reader);
         reader = open(size_bytes, &mut input)?.1;
     }

@@ -247,8 +247,8 @@ fn files_that_cannot_be_read_are_named() {
         ("empty.png", "its content is neither TIFF nor PNG"),
         ("empty", "unknown file ending \"\"; known endings are .hgt, .hdr, .bil"),
         ("map.xyz", "unknown file ending \"xyz\""),
-        ("alone.bil", "its header (.hdr) is missing; put it beside it as alone"),
-        ("alone2.hdr", "its samples (.bil, .dem or .bsq) is missing"),
+        ("alone.bil", "its header is missing; put it beside it as alone.hdr"),
+        ("alone2.hdr", "its samples are missing; put them beside it as alone2.bil, alone2.dem or alone2.bsq"),
     ] {
         let message = load(&path(name), 0).expect_err(name).to_string();
         assert!(message.contains(expected) && message.contains(name) && !message.contains('\n'), "{message}");
@@ -284,6 +284,8 @@ fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
     assert!(picture(ColorType::Grayscale, BitDepth::Eight, 1, 9).starts_with("IHDR: it has 1 x 9 samples"));
     for depth in [BitDepth::Eight, BitDepth::Sixteen] {
         assert!(picture(ColorType::GrayscaleAlpha, depth, 4, 4).contains("all its samples are void"));
+        // Of more bytes than a file of its size may take.
+        assert!(picture(ColorType::GrayscaleAlpha, depth, 6_200, 6_200).contains("all its samples are void"));
     }
     type Encoder<'a> = tiff::encoder::TiffEncoder<&'a mut Cursor<Vec<u8>>, tiff::encoder::TiffKindStandard>;
     let tiff = |write: &dyn Fn(&mut Encoder<'_>)| {

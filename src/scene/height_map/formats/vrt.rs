@@ -6,7 +6,7 @@ use crate::scene::binary::{allocate, spare_bytes};
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
-use crate::scene::height_map::{Coordinates, Geographic};
+use crate::scene::height_map::{self, Coordinates, Geographic};
 use crate::scene::{Error, HeightMap, Samples, file};
 use glam::DVec2;
 use roxmltree::{Document, Node};
@@ -277,6 +277,9 @@ impl Part {
         if let Some(band) = child(node, "SourceBand").filter(|band| text(*band) != "1") {
             return Err(fault(band, format!("it is band {:?}; a height map has one", shown(text(band)))));
         }
+        if text(name).is_empty() {
+            return Err(fault(name, "it names no file"));
+        }
         if text(name).len() > LONGEST_NAME || text(name).contains(char::is_control) {
             return Err(fault(name, format!("it is {:?}, no name of a file", shown(text(name)))));
         }
@@ -287,7 +290,7 @@ impl Part {
             if is_whole {
                 Ok(value as u32)
             } else {
-                Err(fault(rectangle, format!("{name} is {value}; whole samples alone are read")))
+                Err(fault(rectangle, format!("{name} is {}; whole samples alone are read", height_map::shown(value))))
             }
         };
         let pair =
@@ -460,6 +463,7 @@ mod tests {
                 "line 5: its SrcRect leaves west.asc, which has 3 x 2 samples",
             ),
             (with("west.asc", "north.asc"), "north.asc: "),
+            (with("west.asc", " "), "line 6: SourceFilename: it names no file"),
             (with("west.asc", "../west.asc"), "../west.asc: it lies outside"),
             (with("west.asc", "nested.vrt"), "nested.vrt: a mosaic's parts are files of heights"),
             (

@@ -1,5 +1,6 @@
 use crate::scene::binary::ByteOrder;
 use crate::scene::error::{Fault, Place};
+use crate::scene::height_map;
 use glam::DVec2;
 use std::collections::HashMap;
 use std::str::FromStr;
@@ -81,7 +82,8 @@ impl Header {
                 if step.is_finite() && step.min_element() > 0.0 {
                     return Ok(Some(step));
                 }
-                Err(fields.fault("XDIM", format!("and YDIM are {} and {}; both have to be positive", step.x, step.y)))
+                let [x, y] = step.to_array().map(height_map::shown);
+                Err(fields.fault("XDIM", format!("and YDIM are {x} and {y}; both have to be positive")))
             })?,
         })
     }

@@ -21,42 +21,56 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
     // The file that was named has to be there before the one beside it is looked for.
     file::open(path, Asset::HeightMap)?;
     let (header_path, data_path) = if is_header {
-        (path.to_owned(), beside(path, &DATA_ENDINGS, "samples (.bil, .dem or .bsq)")?)
+        (
+            path.to_owned(),
+            beside(path, &DATA_ENDINGS, |name| {
+                format!("its samples are missing; put them beside it as {name}.bil, {name}.dem or {name}.bsq")
+            })?,
+        )
     } else {
-        (beside(path, &["hdr", "HDR"], "header (.hdr)")?, path.to_owned())
+        let missing = |name: &str| format!("its header is missing; put it beside it as {name}.hdr");
+        (beside(path, &["hdr", "HDR"], missing)?, path.to_owned())
     };
     let (header_file, _) = file::open(&header_path, Asset::HeightMap)?;
     let header =
         Header::parse(&read_text(header_file, &header_path)?).map_err(|fault| malformed(&header_path, fault))?;
-    let unit = placement::beside(path)?;
+    let placement = header.placement(placement::beside(path)?).map_err(|fault| malformed(&header_path, fault))?;
     let (data, size_bytes) = file::open(&data_path, Asset::HeightMap)?;
-    parse(&header, size_bytes, BufReader::new(data), unit).map_err(|fault| malformed(&data_path, fault))
+    parse(&header, placement, size_bytes, BufReader::new(data)).map_err(|fault| malformed(&data_path, fault))
 }
 
 /// The file of the same name with one of some endings.
-fn beside(path: &Path, endings: &[&str], what: &str) -> Result<PathBuf, Error> {
-    let fault = |name: &str| format!("its {what} is missing; put it beside it as {name}");
-    file::first_beside(path, endings, |name| malformed(path, Fault::new(Place::Whole, fault(name))))
+fn beside(path: &Path, endings: &[&str], missing: impl Fn(&str) -> String) -> Result<PathBuf, Error> {
+    file::first_beside(path, endings, |name| malformed(path, Fault::new(Place::Whole, missing(name))))
+}
+
+impl Header {
+    /// The spacing and the coordinates that it states.
+    fn placement(&self, unit: Option<Unit>) -> Result<Placement, Fault> {
+        let Header { columns: width, rows: height, north_west, .. } = *self;
+        let Some(step) = self.step else { return Ok(Placement::Unknown) };
+        MapCoordinates { north_west, step, width, height, field: "XDIM, YDIM" }.placed(unit)
+    }
 }
 
 /// Reads the samples that a header describes.
-fn parse(header: &Header, size_bytes: u64, input: impl Read, unit: Option<Unit>) -> Result<HeightMap, Fault> {
+fn parse(header: &Header, placement: Placement, size_bytes: u64, input: impl Read) -> Result<HeightMap, Fault> {
     match header.kind {
-        Kind::Unsigned8 => samples::<u8>(header, size_bytes, input, unit, true),
-        Kind::Signed8 => samples::<i8>(header, size_bytes, input, unit, true),
-        Kind::Unsigned16 => samples::<u16>(header, size_bytes, input, unit, true),
-        Kind::Signed16 => samples::<i16>(header, size_bytes, input, unit, true),
-        Kind::Unsigned32 => samples::<u32>(header, size_bytes, input, unit, true),
-        Kind::Signed32 => samples::<i32>(header, size_bytes, input, unit, true),
-        Kind::Float32 => samples::<f32>(header, size_bytes, input, unit, false),
+        Kind::Unsigned8 => samples::<u8>(header, placement, size_bytes, input, true),
+        Kind::Signed8 => samples::<i8>(header, placement, size_bytes, input, true),
+        Kind::Unsigned16 => samples::<u16>(header, placement, size_bytes, input, true),
+        Kind::Signed16 => samples::<i16>(header, placement, size_bytes, input, true),
+        Kind::Unsigned32 => samples::<u32>(header, placement, size_bytes, input, true),
+        Kind::Signed32 => samples::<i32>(header, placement, size_bytes, input, true),
+        Kind::Float32 => samples::<f32>(header, placement, size_bytes, input, false),
     }
 }
 
 fn samples<T: Pod + Into<f64>>(
     header: &Header,
+    placement: Placement,
     size_bytes: u64,
     mut input: impl Read,
-    unit: Option<Unit>,
     integral: bool,
 ) -> Result<HeightMap, Fault> {
     let (width, height) = (header.columns, header.rows);
@@ -85,9 +99,6 @@ fn samples<T: Pod + Into<f64>>(
     }
     skip(&mut input, header.skip_bytes).map_err(|error| Fault::foreign(Place::Whole, &error))?;
     let rows = Rows { width: width as usize, height: height as usize, stride_bytes, order: header.order };
-    let placement = header.step.map_or(Placement::Unknown, |step| {
-        MapCoordinates { north_west: header.north_west, step, width, height }.placed(unit)
-    });
     Grid { width, height, values: rows.read::<T>(input)?, integral, no_data: header.no_data, placement }.into_map()
 }
 
@@ -100,6 +111,43 @@ pub(super) mod tests {
         let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
         let header = Header::parse(&String::from_utf8_lossy(&bytes[..end]))?;
         let samples = bytes.get(end + 1..).unwrap_or_default();
-        parse(&header, samples.len() as u64, samples, None)
+        parse(&header, header.placement(None)?, samples.len() as u64, samples)
+    }
+
+    #[test]
+    fn a_spacing_that_no_picture_has_is_refused_with_the_header() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.bil"), [7; 4]).unwrap();
+        let read = |dim: &str| {
+            let header = format!("\u{feff}NCOLS 2\r\nNROWS 2\r\nXDIM {dim}\r\nYDIM 10\r\n");
+            std::fs::write(folder.path().join("a.hdr"), header).unwrap();
+            load(&folder.path().join("a.bil"))
+        };
+        // Some editors put a mark of UTF-8 before a text.
+        assert_eq!(read("20").unwrap().spacing_m().to_array(), [20.0, 10.0]);
+        for dim in ["1e300", "1e-300", "1e7"] {
+            let message = read(dim).unwrap_err().to_string();
+            let said = format!(
+                "a.hdr: XDIM, YDIM: it makes samples lie {} x 10 m apart; they",
+                dim.replace("1e7", "10000000")
+            );
+            assert!(message.contains(&said), "{message}");
+        }
+        let message = read("-1e300").unwrap_err().to_string();
+        assert!(message.contains("line 3: XDIM and YDIM are -1e300 and 10; both"), "{message}");
+    }
+
+    #[test]
+    fn what_is_missing_beside_a_file_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, expected) in [
+            ("a.hdr", "its samples are missing; put them beside it as a.bil, a.dem or a.bsq"),
+            ("b.bil", "its header is missing; put it beside it as b.hdr"),
+        ] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, "NCOLS 2\nNROWS 2\n").unwrap();
+            let message = load(&path).unwrap_err().to_string();
+            assert!(message.ends_with(expected), "{message}");
+        }
     }
 }

@@ -1,0 +1,127 @@
+//! A first look at the samples of a GeoTIFF that could be far larger than its file. None is kept.
+
+use super::geotiff::{Picture, fault, foreign};
+use crate::scene::binary::spare_bytes;
+use crate::scene::error::Fault;
+use crate::scene::height_map::grid::{all_void, is_height, is_void, no_height};
+use std::io::{Read, Seek};
+use tiff::decoder::{ChunkType, DecodingResult};
+
+/// Decodes all strips or tiles, one by one, and looks for what makes them no map.
+pub(super) fn check_samples(picture: &mut Picture<impl Read + Seek>) -> Result<(), Fault> {
+    let Picture { decoder, bits, width, no_data, size_bytes, .. } = picture;
+    let (chunk_width, chunk_height) = decoder.chunk_dimensions();
+    if chunk_width == 0 || chunk_height == 0 {
+        return Err(fault("TileWidth, TileLength, RowsPerStrip", "a tile or a strip has no samples"));
+    }
+    let chunk_bytes = u64::from(chunk_width) * u64::from(chunk_height) * u64::from(*bits).div_ceil(8);
+    if chunk_bytes > spare_bytes(*size_bytes) {
+        let reason = format!(
+            "it packs {chunk_bytes} bytes into one strip of a file of {size_bytes}; write it anew in tiles, with \
+             gdal_translate -co TILED=YES"
+        );
+        return Err(fault("RowsPerStrip", reason));
+    }
+    let (count, across) = match decoder.get_chunk_type() {
+        ChunkType::Strip => (decoder.strip_count(), 1),
+        ChunkType::Tile => (decoder.tile_count(), width.div_ceil(chunk_width)),
+    };
+    let mut has_height = false;
+    for chunk in 0..count.map_err(foreign)? {
+        let columns = decoder.chunk_data_dimensions(chunk).0.max(1) as usize;
+        let samples = decoder.read_chunk(chunk).map_err(foreign)?;
+        has_height |= look_at(&samples, *no_data).map_err(|(index, value)| {
+            let row = (chunk / across) as usize * chunk_height as usize + index / columns;
+            let column = (chunk % across) as usize * chunk_width as usize + index % columns;
+            no_height(row, column, value)
+        })?;
+    }
+    if has_height { Ok(()) } else { Err(all_void()) }
+}
+
+/// A sample that is no height: its index and itself.
+type NoHeight = (usize, f64);
+
+/// True where samples have a height.
+fn look_at(samples: &DecodingResult, no_data: Option<f64>) -> Result<bool, NoHeight> {
+    match samples {
+        DecodingResult::U8(values) => any_height(values, no_data, f64::from),
+        DecodingResult::I8(values) => any_height(values, no_data, f64::from),
+        DecodingResult::U16(values) => any_height(values, no_data, f64::from),
+        DecodingResult::I16(values) => any_height(values, no_data, f64::from),
+        DecodingResult::U32(values) => any_height(values, no_data, f64::from),
+        DecodingResult::I32(values) => any_height(values, no_data, f64::from),
+        DecodingResult::U64(values) => any_height(values, no_data, |value| value as f64),
+        DecodingResult::I64(values) => any_height(values, no_data, |value| value as f64),
+        DecodingResult::F16(values) => any_height(values, no_data, f64::from),
+        DecodingResult::F32(values) => any_height(values, no_data, f64::from),
+        DecodingResult::F64(values) => any_height(values, no_data, f64::from),
+    }
+}
+
+fn any_height<T: Copy + PartialEq>(
+    values: &[T],
+    no_data: Option<f64>,
+    number: impl Fn(T) -> f64,
+) -> Result<bool, NoHeight> {
+    // What packs best is one number again and again, which is soon seen.
+    let is_one = values.split_first().is_some_and(|(_, rest)| *rest == values[..rest.len()]);
+    let looked_at = if is_one { 1 } else { values.len() };
+    let mut has_height = false;
+    for (index, value) in values.iter().take(looked_at).map(|&value| number(value)).enumerate() {
+        if is_height(value) {
+            has_height = has_height || !is_void(value, no_data);
+        } else if !is_void(value, no_data) {
+            return Err((index, value));
+        }
+    }
+    Ok(has_height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::geotiff;
+    use std::io::Cursor;
+    use tiff::encoder::colortype::Gray32Float;
+    use tiff::encoder::{Compression, DeflateLevel, TiffEncoder};
+    use tiff::tags::Tag;
+
+    /// Of more bytes than a file of its size may take.
+    const SIDE: u32 = 4_800;
+
+    /// A packed file of zeros, but for the sample of an index; -9999 is no height.
+    fn packed(zero: f32, index: usize, sample: f32) -> Vec<u8> {
+        let mut values = vec![zero; (SIDE * SIDE) as usize];
+        values[index] = sample;
+        let mut file = Cursor::new(Vec::new());
+        let encoder = TiffEncoder::new(&mut file).unwrap();
+        let mut encoder = encoder.with_compression(Compression::Deflate(DeflateLevel::Fast));
+        let mut picture = encoder.new_image::<Gray32Float>(SIDE, SIDE).unwrap();
+        picture.rows_per_strip(64).unwrap();
+        picture.encoder().write_tag(Tag::GdalNodata, "-9999").unwrap();
+        picture.write_data(&values).unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn samples_that_are_no_map_are_refused_before_any_is_kept() {
+        let last = (SIDE * SIDE - 1) as usize;
+        for (zero, index, sample, expected) in [
+            (0.0, 0, f32::NAN, "row 0, column 0: its height is NaN"),
+            (0.0, last, f32::NAN, "row 4799, column 4799: its height is NaN"),
+            (0.0, last - 4_800, 1e30, "row 4798, column 4799: its height is 1.0000000150474662e30 m, and"),
+            (-9_999.0, last, -9_999.0, "all its samples are void"),
+        ] {
+            let bytes = packed(zero, index, sample);
+            assert!(bytes.len() < 1 << 20, "{} bytes", bytes.len());
+            let mut picture = geotiff::Picture::open(bytes.len() as u64, Cursor::new(&bytes[..]), 0).unwrap();
+            let fault = super::check_samples(&mut picture).unwrap_err();
+            assert!(fault.to_string().starts_with(expected), "{fault}");
+            let whole = geotiff::parse(bytes.len() as u64, Cursor::new(&bytes[..]), 0);
+            assert_eq!(whole.unwrap_err(), fault);
+        }
+        let bytes = packed(-9_999.0, last / 2, 5.0);
+        let map = geotiff::parse(bytes.len() as u64, Cursor::new(&bytes[..]), 0).unwrap();
+        assert_eq!((map.voids(), map.range_m()), (last as u64, (5.0, 5.0)));
+    }
+}
