@@ -8,8 +8,6 @@ use crate::measure::parameter::Parameter;
 use crate::measure::study::Study;
 use crate::scene::read_files;
 
-/// Endings of shaders, and of what they include.
-const OF_SHADERS: [&str; 5] = ["vert", "geom", "frag", "comp", "glsl"];
 /// Folders in each other, and entries of one, that are looked at: a larger tree is refused as shaders.
 const MOST_FOLDERS: usize = 16;
 const MOST_ENTRIES: usize = 8192;
@@ -44,7 +42,8 @@ fn list_shaders(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) {
             if depth < MOST_FOLDERS {
                 list_shaders(&path, depth + 1, found);
             }
-        } else if path.extension().is_some_and(|ending| OF_SHADERS.iter().any(|known| ending == *known)) {
+        } else {
+            // A shader may include any of them.
             found.push(path);
         }
     }

@@ -1,6 +1,6 @@
 //! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -148,9 +148,11 @@ pub fn draw<S: Study>(
     };
     let read = reading::by_study(&study, &arguments.machine);
     // Of all frames those whose pictures have names that are read.
-    let is_read = |number: &u32| read.iter().any(|path| path.file_name() == picture_path(*number).file_name());
-    let of_frames = read.iter().filter_map(|path| number_in_name(path)).filter(|number| whole.contains(number));
-    let drawn: BTreeSet<u32> = [frames.first].into_iter().chain(of_frames.filter(is_read)).collect();
+    let names: HashSet<&OsStr> = read.iter().filter_map(|path| path.file_name()).collect();
+    let is_read = |number: &u32| picture_path(*number).file_name().is_some_and(|name| names.contains(name));
+    let numbered = read.iter().filter_map(|path| number_in_name(path)).filter(|number| whole.contains(number));
+    let numbered: BTreeSet<u32> = numbered.collect();
+    let drawn: BTreeSet<u32> = [frames.first].into_iter().chain(numbered.into_iter().filter(is_read)).collect();
     let mut pictures: Vec<PathBuf> = drawn.into_iter().filter(|_| has_pictures).map(picture_path).collect();
     if arguments.shard.is_some() || arguments.rows.is_some() {
         pictures.extend(pictures.clone().iter().map(|picture| part::beside(picture)));
@@ -210,6 +212,10 @@ pub fn draw<S: Study>(
         };
         if has_pictures {
             let path = picture_path(number);
+            // A link may lead to what is read.
+            if path.is_symlink() {
+                outcome::check_apart([&path], &read)?;
+            }
             let kept = if is_cut { &rendered.rows(rows.clone())? } else { &rendered };
             image::write_png(&path, kept)?;
             if let Some(part) = &mut part {

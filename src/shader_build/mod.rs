@@ -252,8 +252,11 @@ fn list_files(folder: &Path, prefix: &str, depth: usize, files: &mut Vec<(String
         return too_many("folders in each other", MOST_FOLDERS);
     }
     for (count, entry) in fs::read_dir(folder).map_err(read_error)?.enumerate() {
-        if count >= MOST_ENTRIES || files.len() >= MOST_SHADERS {
-            return too_many("files", MOST_ENTRIES.min(MOST_SHADERS));
+        if count >= MOST_ENTRIES {
+            return too_many("files", MOST_ENTRIES);
+        }
+        if files.len() > MOST_SHADERS {
+            return too_many("shaders", MOST_SHADERS);
         }
         let entry = entry.map_err(read_error)?;
         let file_name = entry.file_name();

@@ -192,16 +192,17 @@ impl<'a> Picture<'a> {
 fn check_texels(coordinates: &Coordinates, map: &HeightMap) -> Result<(), String> {
     /// Metres of a degree of latitude.
     const DEGREE_M: f64 = 111_000.0;
-    let unit_m = if map.geographic().is_some() { DEGREE_M } else { 1.0 };
-    let range = HeightMap::SPACING_M;
+    let (least_m, most_m) = HeightMap::SPACING_M.into_inner();
+    let (unit_m, most_m) = match map.geographic() {
+        Some(_) => (DEGREE_M, HeightMap::MOST_SPACING_ON_EARTH_M),
+        None => (1.0, most_m),
+    };
     let beyond = [(1, coordinates.step.x), (4, coordinates.step.y)];
-    match beyond.into_iter().find(|(_, step)| !range.contains(&(step * unit_m))) {
+    match beyond.into_iter().find(|(_, step)| !(least_m..=most_m).contains(&(step * unit_m))) {
         None => Ok(()),
         Some((line, step)) => Err(format!(
-            "line {line}: its texels are {} m large in the first map's coordinates, and have to be {} to {} m",
-            shown(step * unit_m),
-            range.start(),
-            range.end()
+            "line {line}: its texels are {} m large in the first map's coordinates, and have to be {least_m} to {most_m} m",
+            shown(step * unit_m)
         )),
     }
 }

@@ -82,11 +82,9 @@ impl<T: Copy + Into<f64>> Grid<T> {
 impl Placement {
     /// Passes where samples of a map of so many rows lie neither too near nor too far apart; `field` of the file says it.
     pub(super) fn check(&self, rows: u32, field: &str) -> Result<(), Fault> {
-        /// In degrees a map may have two samples around the Earth.
-        const EARTH_M: f64 = 1e8;
         let Some(spacing_m) = self.spacing_m(rows) else { return Ok(()) };
         let (least_m, most_m) = HeightMap::SPACING_M.into_inner();
-        let most_m = if matches!(self, Placement::Degrees(_)) { EARTH_M } else { most_m };
+        let most_m = if matches!(self, Placement::Degrees(_)) { HeightMap::MOST_SPACING_ON_EARTH_M } else { most_m };
         if spacing_m.to_array().iter().all(|metres| (least_m..=most_m).contains(metres)) {
             return Ok(());
         }

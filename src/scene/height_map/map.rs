@@ -41,6 +41,8 @@ impl HeightMap {
     pub const SIDE: std::ops::RangeInclusive<u32> = 2..=65_536;
     /// Least and most metres between samples that a file or a user may state: what is far beyond has no picture.
     pub const SPACING_M: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+    /// As the upper end of [`Self::SPACING_M`], of a map in degrees: two samples may lie around the Earth.
+    pub const MOST_SPACING_ON_EARTH_M: f64 = 1e8;
     /// Most metres above and below 0 that a height of a file and the level of a base or of voids may lie.
     pub const MOST_HEIGHT_M: f64 = 1e6;
 

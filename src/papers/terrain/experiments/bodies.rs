@@ -82,7 +82,8 @@ fn bodies(piece: &str, is_first: bool) -> Result<Vec<Body>, Refused> {
 
 /// No field is a number, and one is a word: what has digits and separators alone is meant as a body.
 fn is_heading(line: &str) -> bool {
-    let is_word = |field: &str| field.starts_with(char::is_alphabetic);
+    let is_number = |letter: char| letter.is_ascii_digit() || ['+', '-', '.'].contains(&letter);
+    let is_word = |field: &str| field.contains(char::is_alphabetic) && !field.starts_with(is_number);
     line.split(',').all(|field| bare(field).parse::<f64>().is_err()) && line.split(',').map(bare).any(is_word)
 }
 
