@@ -89,7 +89,8 @@ fn a_palette_of_another_length_than_colours_have_is_refused() {
         encoder.set_palette(palette);
         encoder.write_header().unwrap().write_image_data(&[1, 0]).unwrap();
         let error = read(&bytes).unwrap_err().to_string();
-        assert!(error.contains("palette"), "{error}");
+        // The library knows one without a colour.
+        assert!(error.contains("palette") || error.contains("PLTE"), "{error}");
     }
 }
 
