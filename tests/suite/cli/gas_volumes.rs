@@ -211,7 +211,7 @@ fn files_and_values_that_cannot_be_are_refused() {
         .refused(2, &["no-such.nrrd", "No such file"]);
     small("render --image never.png", Path::new("a.xyz"), "").run().refused(2, &["unknown file ending", ".nrrd"]);
     small("render --image never.png", &good, "@0,0,0,0,0").run().misused(&["longest side"]);
-    small("render --image never.png", &good, "@0,0,0,0,1e30").run().refused(2, &["half extents"]);
+    small("render --image never.png", &good, "@0,0,0,0,1e30").run().refused(2, &["its box has"]);
     for options in ["--density fog", "--texture-scale 2", "--volume box,0,0,0,1,1,1"] {
         small("render --image never.png", &good, "").args(options).run().misused(&["--volume-file"]);
     }
