@@ -302,12 +302,12 @@ impl<S: Study> Ascent<'_, S> {
         let is_printed = self.json.as_deref().is_some_and(|path| path.as_os_str() == "-");
         let json = self.json.clone().filter(|_| !is_printed).unwrap_or_else(|| file(".json"));
         let csv = self.csv.clone().unwrap_or_else(|| file(".csv"));
+        outcome::check_apart([&json, &csv], &reading::by_study(&self.setup, self.machine))?;
         // Before a device is opened.
         let file = File::new(json.clone());
         let left = file.left(self.limits.anew)?;
         check_writable(&json)?;
         outcome::check_file(&csv)?;
-        outcome::check_apart([&json, &csv], &reading::by_study(&self.setup, self.machine))?;
         let record = self.climb(file, left, budget_s)?;
 
         let files = outcome_files(&record, &self.stem(), &self.output.out, csv);
