@@ -2,7 +2,7 @@
 
 use super::hostile_cost::{black_png, refused, refused_of};
 use super::hostile_readers::{PART, STRESS, STRESS_READERS, TABLES, VERDICTS, with, with_items};
-use super::program::{burning, folder, fumarole, terrain};
+use super::program::{burning, fumarole, terrain};
 
 const WOOD: &str = "[[material]]\nkind = \"wood\"\n";
 
@@ -116,7 +116,7 @@ fn records_of_many_small_things() {
 #[cfg(target_os = "linux")]
 #[test]
 fn few_threads() {
-    let out = folder();
+    let out = super::program::folder();
     std::fs::write(out.path().join("a.csv"), "1,2,3,4\n1,2,3\n").unwrap();
     let program = terrain("collide --bodies").arg(out.path().join("a.csv")).for_shell();
     let run = |limit_kib: u32| {
