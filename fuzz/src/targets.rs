@@ -142,10 +142,10 @@ fn hgt(data: &[u8]) {
 fn tif(data: &[u8]) {
     height_map(&[("a.tif", data)]);
     let path = written(&[("a.tif", data)]);
-    if let Err(error) = HeightMapSource::File(path.clone()).load_overview(1) {
+    if let Err(error) = HeightMapSource::File(path.clone()).load_with(1_u32) {
         is_one_line(&error);
     }
-    for overview in [0, 1] {
+    for overview in [0_u32, 1] {
         let mut samples = 0;
         let mut take = |rows: Rows<'_>| {
             samples += match rows {

@@ -12,6 +12,7 @@ use super::outcome;
 use super::pool;
 use super::reading;
 use super::report;
+use super::shader_folder;
 use super::watch::interrupted;
 use crate::measure::Error;
 use crate::measure::bench::{Bench, load};
@@ -78,6 +79,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     papers::each(&mut pictures)?;
     outcome::check_apart(output.files().chain(&page).chain(&pictures.files), &pictures.read)?;
 
+    shader_folder::check(arguments.machine.shader_dir())?;
     // Every paper runs on one device, so that their figures compare.
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
     outcome::say_device(&output, &machine);

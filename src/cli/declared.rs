@@ -12,7 +12,7 @@ use super::options::{CommonArgs, DepthArgs, FRAMES_HELP, MachineArgs, REPEAT_HEL
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, help, loading, passes, pool, reading, render, spelling};
+use super::{bench, help, loading, passes, pool, reading, render, shader_folder, spelling};
 use crate::file;
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
@@ -323,6 +323,9 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     // The window's own process reads nothing, and is to stay the only thread until it draws.
     if verb != "view" {
         pool::start()?;
+        if let Ok(folder) = matches.try_get_one::<PathBuf>("shader_dir") {
+            shader_folder::check(folder.map(PathBuf::as_path))?;
+        }
     }
     loading::begin(matches);
     let result = run_verb::<S>(verb, matches);
@@ -414,11 +417,15 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
     Ok(context.run(experiment)?)
 }
 
-/// The file of the experiment's own, by the begin of its name, that this one is.
+/// Endings of all files that experiments write.
+const WRITTEN: [&str; 4] = ["json", "csv", "svg", "png"];
+
+/// The file of the experiment's own, by begin and end of its name, that this one is.
 fn own_file<S: Study>(context: &Context<'_, S>, read: &Path) -> Option<PathBuf> {
     let (begin, name) = (context.file(""), read.file_name()?);
     let rest = name.to_str()?.strip_prefix(begin.file_name()?.to_str()?)?;
-    let own = Some(begin.with_file_name(name)).filter(|_| rest.starts_with(['-', '.']))?;
+    let is_own = rest.starts_with(['-', '.']) && WRITTEN.contains(&rest.rsplit('.').next()?);
+    let own = is_own.then(|| begin.with_file_name(name))?;
     (file::destination(&own) == file::destination(read)).then_some(own)
 }
 

@@ -50,14 +50,15 @@ pub fn whole(command: Command) -> Command {
     command.disable_help_flag(true).arg(help.help("Print help").help_heading(None))
 }
 
-/// Help of the option that switches off what the help of its opposite tells of.
+/// Help of the option that switches off what the help of its opposite tells of. Where that names what is there else, after an
+/// "or", it is told as what the option sets.
 pub fn switched_off(help: &str) -> String {
     let mut characters = help.chars();
     let first = characters.next().into_iter();
     // Not of a name in capitals.
     let is_word = characters.clone().next().is_none_or(|second| !second.is_uppercase());
     let first: String = if is_word { first.flat_map(char::to_lowercase).collect() } else { first.collect() };
-    format!("Switch off: {first}{}", characters.as_str())
+    format!("Switch off: {first}{}", characters.as_str().replacen(", or ", "; instead ", 1))
 }
 
 #[cfg(test)]
@@ -71,5 +72,9 @@ mod tests {
         assert_eq!(switched_off("SPH in place of it"), "Switch off: SPH in place of it");
         assert_eq!(switched_off("A part"), "Switch off: a part");
         assert_eq!(switched_off(""), "Switch off: ");
+        assert_eq!(
+            switched_off("Let it fall, or leave it there (3.5)"),
+            "Switch off: let it fall; instead leave it there (3.5)"
+        );
     }
 }

@@ -21,6 +21,7 @@ mod processes;
 mod reading;
 mod render;
 mod report;
+mod shader_folder;
 mod spelling;
 mod stress;
 #[cfg(feature = "window")]
@@ -164,6 +165,9 @@ fn without_paper(verb: &OsStr, papers: &[Paper]) -> Option<Failure> {
 
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
+    if let Some(code) = shader_folder::answer() {
+        return code;
+    }
     watch::keep_ignored();
     gpu::pin_software_threads();
     gpu::keep_errors_untraced();
@@ -214,6 +218,9 @@ pub fn umbrella() -> ExitCode {
 
 /// Runs the own binary of a listed paper.
 pub fn binary<S: Study>() -> ExitCode {
+    if let Some(code) = shader_folder::answer() {
+        return code;
+    }
     watch::keep_ignored();
     gpu::pin_software_threads();
     gpu::keep_errors_untraced();

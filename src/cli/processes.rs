@@ -113,6 +113,11 @@ impl Ended {
         self.own_message().map_or_else(|| format!("ended with {}", self.status), str::to_owned)
     }
 
+    /// The rest of its last line that began with `prefix`.
+    pub fn last_after(&self, prefix: &str) -> Option<&str> {
+        self.errors.lines().rev().find_map(|line| line.strip_prefix(prefix))
+    }
+
     fn own_message(&self) -> Option<&str> {
         self.errors.lines().find_map(|line| line.strip_prefix("error: "))
     }

@@ -1,12 +1,13 @@
 //! `report`: records, tables, pictures and plots as one page.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::{Map, Value};
 
 use super::ab::VERDICTS_FILE;
 use super::compare::{Side, parse_side};
@@ -19,6 +20,7 @@ use crate::measure::compare::{self, Comparison, Input, Options, are_in_blocks, c
 use crate::report::alternative::alternatives;
 use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page};
 use crate::report::json::{self, ReadError};
+use crate::report::record::Share;
 use crate::report::tables::{self, Rows, Tables};
 use crate::report::{Record, Run};
 
@@ -134,7 +136,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
     let mut verdicts = None;
     let mut foreign: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let mut commands: Vec<(String, Vec<String>)> = vec![];
+    let mut commands: HashMap<String, Vec<String>> = HashMap::new();
     let first_plot = contents.plots.len();
     let mut drawn: HashMap<&str, Vec<Drawn>> = HashMap::new();
     for path in &files {
@@ -148,7 +150,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
             match document(path) {
                 Ok(Document::Record(record)) => {
                     let record = *record;
-                    commands.push((stem_of(path), record.command.clone()));
+                    commands.insert(stem_of(path), record.command.clone());
                     let side = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side));
                     if let Some(side) = side {
                         sides.insert(side, by_process(path, &record));
@@ -159,7 +161,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
                     }
                 }
                 Ok(Document::Tables(tables)) => {
-                    commands.push((stem_of(path), tables.command.clone()));
+                    commands.insert(stem_of(path), tables.command.clone());
                     add_tables(contents, path, *tables);
                 }
                 Ok(Document::Verdicts(found)) if path.ends_with(VERDICTS_FILE) => verdicts = Some(*found),
@@ -273,15 +275,20 @@ fn told(schema: &str) -> &str {
 
 /// A joined record as one input a process, in their order.
 fn by_process(path: &Path, record: &Record) -> Vec<Input> {
-    let mut processes: Vec<u32> = record.runs.iter().map(|run| run.process).collect();
-    processes.sort_unstable();
-    processes.dedup();
-    let of = |process: u32| {
-        let mut one = record.clone();
-        one.runs.retain(|run| run.process == process);
-        Input { name: path.display().to_string(), record: one }
+    let mut processes: BTreeMap<u32, (Vec<Run>, Vec<u32>)> = BTreeMap::new();
+    for (at, run) in record.runs.iter().enumerate() {
+        let (runs, items) = processes.entry(run.process).or_default();
+        runs.push(run.clone());
+        items.extend(record.share.as_ref().and_then(|share| share.items.get(at)));
+    }
+    let of = |(runs, items): (Vec<Run>, Vec<u32>)| {
+        let share = record.share.as_ref();
+        let share = share.map(|share| Share { identity: share.identity.clone(), shard: share.shard, items });
+        let Record { environment, command, .. } = record;
+        let record = Record { share, ..Record::new(environment.clone(), command.clone(), runs) };
+        Input { name: path.display().to_string(), record }
     };
-    processes.into_iter().map(of).collect()
+    processes.into_values().map(of).collect()
 }
 
 fn name_of(path: &Path) -> String {
@@ -294,10 +301,9 @@ fn stem_of(path: &Path) -> String {
 
 /// The command of the document beside a plot: `gas-1-tables.svg` is drawn with `gas-1.json`, and not with `gas.json` where
 /// both are there.
-fn command_of(plot: &str, commands: &[(String, Vec<String>)]) -> Vec<String> {
-    let is_its = |stem: &str| plot.strip_prefix(stem).is_some_and(|rest| rest.starts_with(['-', '.']));
-    let found = commands.iter().filter(|(stem, _)| is_its(stem)).max_by_key(|(stem, _)| stem.len());
-    found.map_or_else(Vec::new, |(_, command)| command.clone())
+fn command_of(plot: &str, commands: &HashMap<String, Vec<String>>) -> Vec<String> {
+    let stems = plot.match_indices(['-', '.']).map(|(end, _)| &plot[..end]);
+    stems.rev().find_map(|stem| commands.get(stem)).cloned().unwrap_or_default()
 }
 
 /// A run's picture, as one side of a comparison has drawn it.
@@ -313,40 +319,45 @@ struct Drawn {
 /// sides have other parameters, those are put together that differ in the fewest.
 fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
     let [a, b] = [a, b].map(first_ones);
-    let like = |a: &Run, b: &Run| name(a, "") == name(b, "");
+    let places: HashMap<_, usize> = b.iter().enumerate().map(|(of, other)| (configuration(&other.run), of)).collect();
+    let mut partners: Vec<Option<usize>> = a.iter().map(|one| places.get(&configuration(&one.run)).copied()).collect();
+    let mut taken = vec![false; b.len()];
+    partners.iter().flatten().for_each(|of| taken[*of] = true);
+    // Two that differ in nothing are nearest; only what is left is looked at by twos.
+    let mut others: HashMap<String, Vec<usize>> = HashMap::new();
+    for of in (0..b.len()).filter(|of| !taken[*of]) {
+        others.entry(name(&b[of].run, "")).or_default().push(of);
+    }
     let mut candidates: Vec<(usize, usize, usize)> = vec![];
-    for (at, one) in a.iter().enumerate() {
-        let others = b.iter().enumerate().filter(|(_, other)| like(&one.run, &other.run));
-        candidates.extend(others.map(|(of, other)| (differing(&one.run, &other.run), at, of)));
+    for (at, one) in a.iter().enumerate().filter(|(at, _)| partners[*at].is_none()) {
+        let others = others.get(&name(&one.run, "")).into_iter().flatten();
+        candidates.extend(others.map(|of| (differing(&one.run, &b[*of].run), at, *of)));
     }
     candidates.sort_unstable();
-    let mut taken: Vec<(usize, usize)> = vec![];
     for (_, at, of) in candidates {
-        if taken.iter().all(|(a, b)| *a != at && *b != of) {
-            taken.push((at, of));
+        if partners[at].is_none() && !taken[of] {
+            (partners[at], taken[of]) = (Some(of), true);
         }
     }
-    taken.sort_unstable();
-    let pair = |(at, of): (usize, usize)| {
-        let (a, b) = (a[at], b[of]);
+    let pair = |(a, of): (&&Drawn, Option<usize>)| {
+        let b = b[of?];
         // Of one size, or their runs would not be called alike.
         let difference = image::compare(&a.picture, &b.picture, None).ok()?;
         let (mean, p99) = (difference.mean, difference.p99);
         Some(Pair { title: a.name.clone(), pngs: [a.png.clone(), b.png.clone()], mean, p99 })
     };
-    taken.into_iter().filter_map(pair).collect()
+    a.iter().zip(partners).filter_map(pair).collect()
 }
 
 /// The first picture of each configuration.
 fn first_ones(all: &[Drawn]) -> Vec<&Drawn> {
-    let mut found: Vec<&Drawn> = vec![];
-    for one in all {
-        let is_it = |other: &&Drawn| name(&other.run, "") == name(&one.run, "") && differing(&other.run, &one.run) == 0;
-        if !found.iter().any(is_it) {
-            found.push(one);
-        }
-    }
-    found
+    let mut known = HashSet::new();
+    all.iter().filter(|one| known.insert(configuration(&one.run))).collect()
+}
+
+/// Name and parameters.
+fn configuration(run: &Run) -> (String, &Map<String, Value>) {
+    (name(run, ""), &run.config)
 }
 
 /// Number of parameters that differ.
@@ -358,24 +369,24 @@ fn differing(a: &Run, b: &Run) -> usize {
 /// Adds a record with its pictures, which it gives back.
 fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn> {
     let mut found: Vec<(Picture, Rgba8)> = vec![];
+    let mut known = HashSet::new();
+    // The first of each paper and size.
+    let mut bases: HashMap<(&str, u32, u32), usize> = HashMap::new();
     for (index, run) in record.runs.iter().enumerate() {
         // Every process of a side of `ab` has drawn the same.
-        let is_run =
-            |other: &Run| (&other.paper, &other.variant, &other.image) == (&run.paper, &run.variant, &run.image);
-        if record.runs[..index].iter().any(is_run) {
+        let image = run.image.as_ref().map(|image| (&image.path, &image.sha256));
+        if !known.insert((&run.paper, &run.variant, image)) {
             continue;
         }
         match picture(path, run) {
             None => {}
             Some(Err(problem)) => contents.warnings.push(problem),
             Some(Ok((png, decoded))) => {
-                let difference = found.iter().filter(|(other, _)| record.runs[other.run].paper == run.paper).find_map(
-                    |(other, base)| {
-                        // Of another size it has none.
-                        let difference = image::compare(base, &decoded, None).ok()?;
-                        Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
-                    },
-                );
+                let base = bases.entry((run.paper.as_str(), decoded.width(), decoded.height())).or_insert(found.len());
+                let difference = found.get(*base).and_then(|(other, base)| {
+                    let difference = image::compare(base, &decoded, None).ok()?;
+                    Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
+                });
                 found.push((Picture { run: index, png, difference }, decoded));
             }
         }
@@ -411,4 +422,72 @@ fn picture(record: &Path, run: &Run) -> Option<Result<(Vec<u8>, Rgba8), String>>
     };
     let read = file::read(path, MAX_PICTURE_BYTES).map_err(|e| format!("{}: {e}", path.display()));
     Some(read.and_then(|png| Ok((png, image::read_png(path).map_err(|e| e.to_string())?))))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::report::example;
+
+    fn run(process: u32, planes: u32) -> Run {
+        let mut run = Run { process, ..example::run() };
+        run.config.insert("planes".to_owned(), planes.into());
+        run
+    }
+
+    /// A record is copied once, and not for each of its processes.
+    #[test]
+    fn a_record_of_many_processes_is_taken_apart_at_once() {
+        let count = 4_000;
+        let runs: Vec<Run> = (0..2 * count).map(|at| run(count - 1 - at % count, at)).collect();
+        let share = Share { identity: "ab".to_owned(), shard: None, items: (0..2 * count).collect() };
+        let record =
+            Record { share: Some(share), ..Record::new(example::environment(), vec!["ab".to_owned()], runs.clone()) };
+        let begun = Instant::now();
+        let inputs = by_process(Path::new("ab-a.json"), &record);
+        assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+        assert_eq!(inputs.len(), count as usize);
+        for (process, Input { name, record }) in (0..count).zip(&inputs) {
+            let places = [count - 1 - process, 2 * count - 1 - process];
+            assert_eq!(record.runs, places.map(|place| runs[place as usize].clone()), "{process}");
+            assert_eq!(record.share.as_ref().unwrap().items, places, "{process}");
+            assert_eq!((name.as_str(), record.command.as_slice()), ("ab-a.json", &["ab".to_owned()][..]));
+        }
+    }
+
+    /// Equal ones go together, then those that differ least; a picture that another process has drawn again is left out.
+    #[test]
+    fn pictures_go_with_the_nearest() {
+        let drawn = |side: u8, planes: &[u32]| -> Vec<Drawn> {
+            let one = |&planes: &u32| Drawn {
+                run: run(0, planes),
+                name: planes.to_string(),
+                png: vec![side, planes as u8],
+                picture: Rgba8::new(1, 1, vec![side, 0, 0, 255]).unwrap(),
+            };
+            planes.iter().map(one).collect()
+        };
+        let found = pairs(&drawn(1, &[7, 13, 7, 11, 17]), &drawn(2, &[11, 9, 7, 11]));
+        let found: Vec<_> = found.into_iter().map(|pair| (pair.title, pair.pngs)).collect();
+        let pair = |a: u8, b: u8| (a.to_string(), [vec![1, a], vec![2, b]]);
+        assert_eq!(found, [pair(7, 7), pair(13, 9), pair(11, 11)]);
+    }
+
+    #[test]
+    fn a_plot_has_the_command_of_the_longest_name() {
+        let of_stem = |stem: &str| (stem.to_owned(), vec![stem.to_owned()]);
+        let commands = HashMap::from(["gas", "gas-1", "gas-12", "b.c"].map(of_stem));
+        for (plot, stem) in [
+            ("gas-1.svg", "gas-1"),
+            ("gas-1-tables.svg", "gas-1"),
+            ("gas-12.svg", "gas-12"),
+            ("gas-123.svg", "gas"),
+            ("b.c-1.svg", "b.c"),
+        ] {
+            assert_eq!(command_of(plot, &commands), [stem], "{plot}");
+        }
+        assert!(command_of("lava-1.svg", &commands).is_empty() && command_of("gas", &commands).is_empty());
+    }
 }

@@ -12,7 +12,7 @@ mod output;
 mod temporary;
 
 pub use input::{below, open, read, read_text};
-pub use output::{OutputError, check_writable, destination, write, write_unsynced, write_with};
+pub use output::{OutputError, check_writable, destination, is_pipe, write, write_unsynced, write_with};
 
 /// A file in the system's temporary folder, removed when dropped; the next one removes what killed processes left there.
 ///

@@ -100,9 +100,13 @@ pub fn write_with(
     let failed = |source| OutputError::Write { path: path.to_owned(), source };
     match Destination::find(path)? {
         Destination::Stream => {
-            let stream = open_stream(path).map_err(failed)?;
-            let mut stream = stream.ok_or_else(|| OutputError::Unread { path: path.to_owned() })?;
-            buffered(&mut stream, fill).map_err(failed)
+            let unread = || OutputError::Unread { path: path.to_owned() };
+            let mut stream = open_stream(path).map_err(failed)?.ok_or_else(unread)?;
+            // Its reader may also leave meanwhile.
+            buffered(&mut stream, fill).map_err(|source| match source.kind() {
+                ErrorKind::BrokenPipe => unread(),
+                _ => failed(source),
+            })
         }
         Destination::File(target) => {
             create_directory(&parent(&target))?;
@@ -146,6 +150,17 @@ fn nearest(directory: &Path) -> io::Result<PathBuf> {
         }
     }
     Ok(PathBuf::from("."))
+}
+
+/// True for a pipe, which takes what is written to it once and is never replaced.
+pub fn is_pipe(path: &Path) -> bool {
+    #[cfg(unix)]
+    if fifo::is_fifo(path) {
+        return true;
+    }
+    // No other system keeps pipes among files.
+    let _ = path;
+    false
 }
 
 /// The regular file that `path` names or would name, every link followed; `None` for a device or a pipe, and where there can be
@@ -390,6 +405,23 @@ mod tests {
         // Not even root makes files there.
         let error = check_writable(Path::new("/proc/result.json")).unwrap_err().to_string();
         assert!(error.contains("/proc/result.json") && !error.contains(".tmp"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_whose_reader_leaves_is_one_that_no_one_reads() {
+        use std::os::unix::fs::OpenOptionsExt;
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        assert!(is_pipe(&path) && !is_pipe(root.path()) && !is_pipe(Path::new("/dev/null")));
+        let reader = File::options().read(true).custom_flags(nix::libc::O_NONBLOCK).open(&path).unwrap();
+        let written = write_with(&path, |stream| {
+            drop(reader);
+            stream.write_all(b"all of it")
+        });
+        let error = written.unwrap_err();
+        assert!(matches!(error, OutputError::Unread { .. }), "{error}");
     }
 
     #[cfg(unix)]

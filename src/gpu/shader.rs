@@ -16,7 +16,7 @@ use super::pipeline_store::PipelineStore;
 use crate::content;
 use crate::shader_build::{self, EMBEDDED, Interface, Stage, embedded_interface};
 
-pub use crate::shader_build::Compiler;
+pub use crate::shader_build::{Compiler, warm_up as warm_up_compilers};
 
 /// The shaders embedded in the program, or those of a directory compiled at start in their place, and the modules and
 /// pipelines that passes have made of them.
@@ -160,9 +160,17 @@ impl Replacements {
     /// # Errors
     /// As [`ShaderLibrary::new`].
     pub fn read(folder: Option<&Path>) -> Result<Self, Error> {
+        Replacements::read_with(folder, &mut |_, _| ())
+    }
+
+    /// The same, and calls `begin` with a shader's name and the bytes of its text before it goes to the compilers.
+    ///
+    /// # Errors
+    /// As [`ShaderLibrary::new`].
+    pub fn read_with(folder: Option<&Path>, begin: &mut dyn FnMut(&str, usize)) -> Result<Self, Error> {
         let Some(dir) = folder else { return Ok(Replacements { shaders: Vec::new(), folder: String::new() }) };
         let folder = dir.display().to_string();
-        match replace(dir) {
+        match replace(dir, begin) {
             Ok(shaders) => Ok(Replacements { shaders, folder }),
             Err(problem) => Err(Error::Shader { name: folder, problem }),
         }
@@ -170,8 +178,8 @@ impl Replacements {
 }
 
 /// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.
-fn replace(dir: &Path) -> Result<Vec<shader_build::CompiledShader>, String> {
-    let shaders = shader_build::compile_dir(dir, EMBEDDED).map_err(|e| e.to_string())?;
+fn replace(dir: &Path, begin: &mut dyn FnMut(&str, usize)) -> Result<Vec<shader_build::CompiledShader>, String> {
+    let shaders = shader_build::compile_dir_with(dir, EMBEDDED, begin).map_err(|e| e.to_string())?;
     if shaders.iter().any(|s| EMBEDDED.iter().any(|built_in| built_in.name == s.name)) {
         Ok(shaders)
     } else {

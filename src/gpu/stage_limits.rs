@@ -30,41 +30,55 @@ pub(super) fn stage(device: &Device, pass: &str, module: &ShaderModule) -> Resul
         places.iter().map(|place| u64::from(place.location) + u64::from(place.count)).max().unwrap_or(0)
     };
     let (inputs, outputs) = (ends(&interface.inputs), ends(&interface.outputs));
-    // Limits of varyings are told in components, four of which make up a location.
-    let taken = |limit: u32| ("count of locations that a stage takes from another", inputs, limit / 4);
-    let given = |limit: u32| ("count of locations that a stage gives to another", outputs, limit / 4);
+    let components = |places: &[Location], built_ins: u64| {
+        let of_place = |place: &Location| u64::from(place.count) * u64::from(place.format.components);
+        places.iter().map(of_place).sum::<u64>().saturating_add(built_ins)
+    };
+    let [taken_built_ins, given_built_ins] = interface.built_in_components;
+    let (all_inputs, all_outputs) =
+        (components(&interface.inputs, taken_built_ins), components(&interface.outputs, given_built_ins));
+    // Limits of varyings are told in components, four of which make up a location. Built-ins have none, and count as well.
+    let taken = |limit: u32| {
+        [
+            ("count of locations that a stage takes from another", inputs, limit / 4),
+            ("count of components that a stage takes, built-ins among them,", all_inputs, limit),
+        ]
+    };
+    let given = |limit: u32| {
+        [
+            ("count of locations that a stage gives to another", outputs, limit / 4),
+            ("count of components that a stage gives, built-ins among them,", all_outputs, limit),
+        ]
+    };
     let mut counts: Vec<Counted> = Vec::new();
     match interface.stage {
-        Stage::Vertex => counts.extend([
-            ("count of locations of vertex attributes", inputs, limits.max_vertex_input_attributes),
-            given(limits.max_vertex_output_components),
-        ]),
+        Stage::Vertex => {
+            counts.push(("count of locations of vertex attributes", inputs, limits.max_vertex_input_attributes));
+            counts.extend(given(limits.max_vertex_output_components));
+        }
         Stage::Geometry => {
             let vertices = u64::from(interface.emitted_vertices.unwrap_or(0));
             if vertices == 0 {
                 let problem = format!("its geometry shader {} emits no vertices", module.name);
                 return Err(Error::Pass { pass: pass.to_owned(), problem });
             }
-            let components = |place: &Location| u64::from(place.count) * u64::from(place.format.components);
-            // With its place.
-            let of_vertex = 4 + interface.outputs.iter().map(components).sum::<u64>();
             let invocations = u64::from(interface.invocations.unwrap_or(1));
+            counts.extend(taken(limits.max_geometry_input_components));
+            counts.extend(given(limits.max_geometry_output_components));
             counts.extend([
-                taken(limits.max_geometry_input_components),
-                given(limits.max_geometry_output_components),
                 ("count of vertices of a geometry stage", vertices, limits.max_geometry_output_vertices),
                 (
                     "count of components of a geometry stage's vertices",
-                    vertices * of_vertex,
+                    vertices.saturating_mul(all_outputs),
                     limits.max_geometry_total_output_components,
                 ),
                 ("count of invocations of a geometry stage", invocations, limits.max_geometry_shader_invocations),
             ]);
         }
-        Stage::Fragment => counts.extend([
-            taken(limits.max_fragment_input_components),
-            ("count of locations of colours", outputs, limits.max_fragment_output_attachments),
-        ]),
+        Stage::Fragment => {
+            counts.extend(taken(limits.max_fragment_input_components));
+            counts.push(("count of locations of colours", outputs, limits.max_fragment_output_attachments));
+        }
         Stage::Compute => {
             let size = interface.local_size.unwrap_or([1; 3]);
             let along = |(threads, limit)| ("threads of a workgroup along one axis", u64::from(threads), limit);

@@ -276,13 +276,15 @@ impl<S: Study> Context<'_, S> {
 
     /// Writes the rows of a sweep that has begun as CSV, where the finished one will be: whatever ends it, they stay.
     fn keep(&self, machine: &Machine, rows: &[Row], points: usize) -> Result<(), Error> {
-        // The reader of a pipe would take them for all that there will be.
-        if points < 2 || destination(&self.csv_file()).is_none() {
-            return Ok(());
-        }
-        let runs = rows.iter().map(|row| row.run.clone()).collect();
-        let record = Record::new(machine.environment(), std::env::args().collect(), runs);
-        Ok(write(&self.csv_file(), csv::to_string(&record).as_bytes())?)
+        let runs = || rows.iter().map(|row| row.run.clone()).collect();
+        let record = || Record::new(machine.environment(), std::env::args().collect(), runs());
+        if points < 2 { Ok(()) } else { self.keep_csv(|| csv::to_string(&record())) }
+    }
+
+    fn keep_csv(&self, text: impl FnOnce() -> String) -> Result<(), Error> {
+        let path = self.csv_file();
+        // The reader of a pipe would take it for all that there will be.
+        if destination(&path).is_some() { Ok(write(&path, text().as_bytes())?) } else { Ok(()) }
     }
 
     /// A file of the experiment's own, in the folder for files that are not named.
@@ -371,11 +373,12 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// [`Error::Output`].
     pub fn save_tables(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
-        let mut saved = self.save_document(machine, tables);
-        for (name, table) in tables {
-            saved = saved.and(self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes()));
-        }
-        saved
+        self.save_document(machine, tables).and(self.save_csvs(tables))
+    }
+
+    fn save_csvs(&self, tables: &[NamedTable]) -> Result<(), Error> {
+        let save = |(name, table): &NamedTable| self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes());
+        tables.iter().map(save).fold(Ok(()), Result::and)
     }
 
     fn save_document(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
@@ -418,10 +421,7 @@ impl<S: Study> Context<'_, S> {
         *self.doubts.of_machine.borrow_mut() = machine.warnings().iter().map(|text| self.console.spell(text)).collect();
         let text = json_text(&self.document(machine, table, more, self.warnings()))?;
         let mut saved = self.save(&self.json_file(), text.as_bytes());
-        saved = saved.and(self.save(&self.csv_file(), table.csv().as_bytes()));
-        for (name, table) in more {
-            saved = saved.and(self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes()));
-        }
+        saved = saved.and(self.save(&self.csv_file(), table.csv().as_bytes())).and(self.save_csvs(more));
         saved.and(self.print(if self.is_json_printed() { text } else { printed }))
     }
 
@@ -443,8 +443,7 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// [`Error::Output`].
     pub fn keep_table(&self, table: &ResultTable) -> Result<(), Error> {
-        let is_file = destination(&self.csv_file()).is_some();
-        if is_file { Ok(write(&self.csv_file(), table.csv().as_bytes())?) } else { Ok(()) }
+        self.keep_csv(|| table.csv())
     }
 
     /// Publishes a table without times and its plot.

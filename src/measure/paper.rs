@@ -65,7 +65,7 @@ pub trait Paper {
     /// the paper has enlarged its buffers, and the frames must be recorded again.
     ///
     /// # Errors
-    /// [`Error::Limit`] where this device cannot offer the capacity.
+    /// [`Error::Limit`] where this device cannot offer the capacity, [`Error::Filling`] where a parameter of the user's forbids it.
     fn settle(&mut self, _shaders: &ShaderLibrary) -> Result<bool, Error> {
         Ok(true)
     }

@@ -1,5 +1,6 @@
 //! A run as a table for people.
 
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 use super::alternative::alternatives;
@@ -39,16 +40,17 @@ pub const SCATTERS_BY: &str = "noisy: repetitions of one frame scatter by ";
 pub fn counted_warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>) -> Vec<String> {
     let percent = |warning: &str| warning.strip_prefix(SCATTERS_BY)?.strip_suffix(" %")?.parse::<u64>().ok();
     let mut warnings: Vec<(&str, usize)> = vec![];
+    // Noise of every percentage is one kind.
+    let mut places: HashMap<Option<&str>, usize> = HashMap::new();
     let mut count_of_runs = 0;
     for run in of_runs {
         count_of_runs += 1;
-        for (at, warning) in run.iter().enumerate() {
-            // Twice in one run is one run.
-            if run[..at].contains(warning) {
-                continue;
-            }
-            let is_of_one_kind = |known: &str| known == warning || percent(known).and(percent(warning)).is_some();
-            match warnings.iter_mut().find(|(known, _)| is_of_one_kind(known)) {
+        // Twice in one run is one run.
+        let mut known = HashSet::new();
+        for warning in run.iter().filter(|warning| known.insert(warning.as_str())) {
+            let kind = if percent(warning).is_some() { None } else { Some(warning.as_str()) };
+            let place = *places.entry(kind).or_insert(warnings.len());
+            match warnings.get_mut(place) {
                 Some((known, count)) => {
                     *count += 1;
                     if percent(warning) > percent(known) {

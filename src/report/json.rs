@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::bounded;
 use super::record::{Record, SCHEMA};
 use super::stress::{self, StressRecord};
+use super::text::one_line;
 use crate::file;
 
 /// Failures of reading a record; every message names the file.
@@ -50,7 +51,8 @@ pub enum ReadError {
         found: String,
     },
     #[error(
-        "cannot read the record {}: field {field}: {}; write it again with --json", .path.display(), plain(.source)
+        "cannot read the record {}: field {}: {}; write it again with --json",
+        .path.display(), one_line(.field), plain(.source)
     )]
     WrongField {
         /// File that was read.
@@ -75,9 +77,9 @@ fn other_schema(found: &str) -> String {
     format!("its schema is {}{dots}, not \"{SCHEMA}\"", &found[..end])
 }
 
-/// The parser's message with its names in quotes: names in backticks are options of ours.
+/// The parser's message on one line, whatever it quotes, with its names in quotes: names in backticks are options of ours.
 pub fn plain(error: &serde_json::Error) -> String {
-    error.to_string().replace('`', "\"")
+    one_line(&error.to_string()).replace('`', "\"")
 }
 
 /// Any document of this crate as JSON: objects on indented lines, lists of plain values on one line, a final newline.
@@ -275,6 +277,19 @@ mod tests {
         let error = error_of(&value.to_string());
         let expected = "runs[0].passes[1].gpu_ms.median";
         assert!(error.to_string().contains(expected), "{error}");
+    }
+
+    /// Of a file that quotes lines in a word of the schema, and in the name of a field.
+    #[test]
+    fn errors_are_one_line_whatever_they_quote() {
+        let mut word = serde_json::to_value(example::full()).unwrap();
+        word["environment"]["device"]["type"] = Value::from("x\nerror: y\u{1b}[2J");
+        let mut name = serde_json::to_value(example::full()).unwrap();
+        name["environment"]["host"]["variables"] = serde_json::json!({"x\nerror: y\u{1b}[2J": 1});
+        for document in [word, name] {
+            let error = error_of(&document.to_string()).to_string();
+            assert!(!error.contains(char::is_control) && error.contains("x\\u000aerror: y\\u001b[2J"), "{error}");
+        }
     }
 
     #[test]

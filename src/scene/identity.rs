@@ -1,5 +1,6 @@
 //! Identity of an input by its content.
 
+use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -7,7 +8,8 @@ use std::time::SystemTime;
 use serde::Deserialize;
 
 use super::formats::gltf_buffer::percent_decoded;
-use super::{height_map, voxels, world_file};
+use super::formats::gltf_document::buffer_uris;
+use super::{formats, height_map, voxels, world_file};
 use crate::{content, file};
 
 /// Endings of the files that a raster may be read with, in small or in large letters.
@@ -76,33 +78,11 @@ struct MaterialTable {
 /// Largest file that may be a table of materials, bytes: no larger one is taken for one.
 const MOST_TABLE_BYTES: u64 = 96 << 10;
 
-/// Largest document whose buffers are looked for, bytes.
-const MOST_GLTF_BYTES: u64 = 1 << 30;
-
-/// Other files that a glTF document names; the rest of it is passed over.
-#[derive(Deserialize)]
-struct GltfBuffers {
-    #[serde(default)]
-    buffers: Vec<GltfBuffer>,
-}
-
-#[derive(Deserialize)]
-struct GltfBuffer {
-    uri: Option<String>,
-}
-
 /// The other files that are read with a file, as far as they are there.
 fn companions(path: &Path) -> Vec<PathBuf> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     if ending == "gltf" {
-        let document: Option<GltfBuffers> =
-            file::read(path, MOST_GLTF_BYTES).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let uris = document.into_iter().flat_map(|document| document.buffers).filter_map(|buffer| buffer.uri);
-        let uris = uris.filter(|uri| !uri.starts_with("data:"));
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let named = uris.filter_map(|uri| percent_decoded(&uri));
-        let files = named.filter_map(|name| file::below(folder, Path::new(&name)).ok());
-        return files.filter(|file| file.is_file()).collect();
+        return gltf_buffers(path);
     }
     if ending == "toml" {
         let text = file::read_text(path, MOST_TABLE_BYTES).unwrap_or_default();
@@ -140,6 +120,16 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     others.filter_map(|other| spelled(other).into_iter().find(|file| file.is_file())).collect()
 }
 
+/// The files of a glTF document's buffers, up to the first that is not there: its reader ends with that one.
+fn gltf_buffers(path: &Path) -> Vec<PathBuf> {
+    let text = file::read(path, formats::MAX_FILE_BYTES).unwrap_or_default();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut known = HashSet::new();
+    let uris = buffer_uris(&text).into_iter().filter(|uri| !uri.starts_with("data:") && known.insert(uri.clone()));
+    let file = |uri: String| file::below(folder, Path::new(&percent_decoded(&uri)?)).ok().filter(|file| file.is_file());
+    uris.map_while(file).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,6 +149,15 @@ mod tests {
             write(name, "two");
             assert_ne!(source_sha256(&gltf).unwrap(), first, "{name}");
         }
+
+        // One of so many objects is refused by its reader, and so is a name of no file.
+        let objects = format!(r#"{{"buffers": [{{"uri": "a.bin"}}{}]}}"#, ",{}".repeat(200_000));
+        let names = |uris: [&str; 3]| {
+            let text = format!(r#"{{"buffers": [{{"uri": "{}"}}]}}"#, uris.join(r#""}, {"uri": ""#));
+            read_files(&write("names.gltf", &text)).len()
+        };
+        assert_eq!(read_files(&write("objects.gltf", &objects)).len(), 1);
+        assert_eq!([names(["a.bin", "a.bin", "a%20b.bin"]), names(["a.bin", "gone.bin", "a%20b.bin"])], [3, 2]);
 
         let raster = write("b.bil", "raster");
         let alone = source_sha256(&raster).unwrap();

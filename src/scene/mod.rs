@@ -35,8 +35,8 @@ pub use camera::Camera;
 pub use divide::divided;
 pub use error::{Asset, Error, Fault, Place};
 pub use height_map::{
-    Coordinates, Geographic, HeightMap, HeightMapSource, RowSource, Rows, Samples, Shown, Suspect, Voids, shown,
-    volcano,
+    Coordinates, Geographic, HeightMap, HeightMapSource, MapOptions, RowSource, Rows, Samples, Shown, Suspect, Voids,
+    shown, volcano,
 };
 pub use identity::{SourceState, read_files, source_sha256};
 pub use light::Light;

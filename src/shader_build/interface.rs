@@ -22,6 +22,9 @@ pub struct Interface {
     pub emitted_vertices: Option<u32>,
     /// Invocations of a geometry stage for each primitive.
     pub invocations: Option<u32>,
+    /// Components of the built-ins that the stage takes, and of those that it gives. Of a block of them all members count, as Vulkan
+    /// counts them, and of an array of blocks one.
+    pub built_in_components: [u64; 2],
     /// A vertex or geometry stage says how large its points are.
     pub writes_point_size: bool,
     /// Every resource that the binary declares, by ascending set and binding.

@@ -24,7 +24,7 @@
 //! variants alone; an error names the file and the line that were written.
 //!
 //! A folder may be anybody's, so files, texts after includes and variants have bounds, several times what our own shaders
-//! need. How much a compiler takes for a text within them is the compiler's.
+//! need. How much a compiler takes for a text within them is the compiler's: the command line has it tried in a process with limits.
 //!
 //! # The GLSL that both compilers accept
 //!
@@ -204,6 +204,18 @@ impl Diagnostic {
 /// A shader that naga refuses, or gives another interface, is no error here but the reason in
 /// [`CompiledShader::naga`], which [`check_exceptions`] judges.
 pub fn compile_dir(root: &Path, known: &[EmbeddedShader]) -> Result<Vec<CompiledShader>, Error> {
+    compile_dir_with(root, known, &mut |_, _| ())
+}
+
+/// The same, and calls `begin` with a shader's name and the bytes of its text before it goes to the compilers.
+///
+/// # Errors
+/// As [`compile_dir`].
+pub fn compile_dir_with(
+    root: &Path,
+    known: &[EmbeddedShader],
+    begin: &mut dyn FnMut(&str, usize),
+) -> Result<Vec<CompiledShader>, Error> {
     let mut files = Vec::new();
     list_files(root, "", 0, &mut files)?;
     let too_many = |of, limit| Err(Error::TooMany { path: root.to_owned(), of, limit });
@@ -232,7 +244,7 @@ pub fn compile_dir(root: &Path, known: &[EmbeddedShader]) -> Result<Vec<Compiled
             return Err(Error::TooMuch { path: root.to_owned(), bytes, limit });
         }
     }
-    shaders.iter().map(|shader| compile(&shader.0, shader.2, &read(shader)?, known)).collect()
+    shaders.iter().map(|shader| compile(&shader.0, shader.2, &read(shader)?, known, begin)).collect()
 }
 
 /// Of a folder with its variants; our own are 505.
@@ -274,13 +286,20 @@ fn list_files(folder: &Path, prefix: &str, depth: usize, files: &mut Vec<(String
     Ok(())
 }
 
-fn compile(name: &str, stage: Stage, source: &Source, known: &[EmbeddedShader]) -> Result<CompiledShader, Error> {
+fn compile(
+    name: &str,
+    stage: Stage,
+    source: &Source,
+    known: &[EmbeddedShader],
+    begin: &mut dyn FnMut(&str, usize),
+) -> Result<CompiledShader, Error> {
     let text_sha256 = Sha256::digest(&source.text).into();
     if let Ok(at) = known.binary_search_by(|known| known.name.cmp(name))
         && known[at].text_sha256 == text_sha256
     {
         return Ok(CompiledShader::from(&known[at]));
     }
+    begin(name, source.text.len());
     let glslang = glslang::compile(stage, &source.text)
         .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Glslang, source))?;
     let interface =
@@ -296,6 +315,14 @@ fn compile(name: &str, stage: Stage, source: &Source, known: &[EmbeddedShader]) 
         glslang,
         naga: naga.map_err(|reason| listed.map_or(reason, |(_, listed)| (*listed).to_owned())),
     })
+}
+
+/// Compiles an empty shader of each stage: glslang makes its tables of names at the first of each, in 0.1 s and some 20 MiB.
+pub fn warm_up() {
+    for stage in [Stage::Vertex, Stage::Geometry, Stage::Fragment, Stage::Compute] {
+        // What it says of a shader without outputs matters to nobody.
+        let _ = glslang::compile(stage, "#version 450\nvoid main() {}\n");
+    }
 }
 
 /// Why naga's binary cannot stand in for the one that `interface` was read from, if so.

@@ -30,6 +30,7 @@ impl Interface {
             [entry_point] => Ok(Interface {
                 lies_in_rows: lies_in_rows(words),
                 shared_bytes: spirv::shared_bytes(words),
+                built_in_components: spirv::built_in_components(words),
                 writes_point_size: spirv::writes_point_size(words),
                 samplings: spirv::samplings(words),
                 ..read_entry_point(entry_point)?
@@ -59,6 +60,7 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
         primitive_vertices: read_primitive(entry_point),
         emitted_vertices: read_operands(entry_point, ExecutionMode::OutputVertices).map(|[vertices]| vertices),
         invocations: read_operands(entry_point, ExecutionMode::Invocations).map(|[invocations]| invocations),
+        built_in_components: [0; 2],
         writes_point_size: false,
         bindings: Vec::new(),
         samplings: Vec::new(),

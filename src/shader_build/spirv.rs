@@ -53,6 +53,62 @@ pub(super) fn declared_built_ins(words: &[u32]) -> HashSet<u32> {
     instructions(words).filter_map(built_in).collect()
 }
 
+/// Components of the built-in variables that the entry point takes, and of those that it gives.
+pub(super) fn built_in_components(words: &[u32]) -> [u64; 2] {
+    let mut built_ins = HashSet::new();
+    // Components of a type, and whether it is a block of built-ins; pointers have those of what they point to.
+    let mut types: HashMap<u32, (u64, bool)> = HashMap::new();
+    let mut constants = HashMap::new();
+    let mut components = [0_u64; 2];
+    for (op, operands) in instructions(words) {
+        let of = |id: u32| types.get(&id).copied().unwrap_or_default();
+        let (id, found) = match *operands {
+            [variable, decoration, _] if op == Op::Decorate as u32 && decoration == Decoration::BuiltIn as u32 => {
+                built_ins.insert(variable);
+                continue;
+            }
+            [block, _, decoration, _]
+                if op == Op::MemberDecorate as u32 && decoration == Decoration::BuiltIn as u32 =>
+            {
+                built_ins.insert(block);
+                continue;
+            }
+            [pointer, variable, class, ..] if op == Op::Variable as u32 => {
+                let (count, is_block) = of(pointer);
+                let classes = [StorageClass::Input as u32, StorageClass::Output as u32];
+                let of_class = components.iter_mut().zip(classes).find(|(_, known)| *known == class);
+                if let Some((sum, _)) = of_class.filter(|_| is_block || built_ins.contains(&variable)) {
+                    *sum = sum.saturating_add(count);
+                }
+                continue;
+            }
+            [_, constant, value] if op == Op::Constant as u32 || op == Op::SpecConstant as u32 => {
+                constants.insert(constant, value);
+                continue;
+            }
+            [id, ..] if [Op::TypeBool, Op::TypeInt, Op::TypeFloat].iter().any(|&scalar| op == scalar as u32) => {
+                (id, (1, false))
+            }
+            [id, part, count] if op == Op::TypeVector as u32 || op == Op::TypeMatrix as u32 => {
+                (id, (of(part).0.saturating_mul(count.into()), false))
+            }
+            [id, element, length] if op == Op::TypeArray as u32 => {
+                let (count, is_block) = of(element);
+                let times = if is_block { 1 } else { constants.get(&length).copied().unwrap_or(u32::MAX) };
+                (id, (count.saturating_mul(times.into()), is_block))
+            }
+            [id, ref members @ ..] if op == Op::TypeStruct as u32 => {
+                let sum = members.iter().map(|&member| of(member).0).fold(0, u64::saturating_add);
+                (id, (sum, built_ins.contains(&id)))
+            }
+            [id, _, pointee] if op == Op::TypePointer as u32 => (id, of(pointee)),
+            _ => continue,
+        };
+        types.insert(id, found);
+    }
+    components
+}
+
 /// True when a value is stored into `gl_PointSize`, a variable or a member of the block of built-ins.
 pub(super) fn writes_point_size(words: &[u32]) -> bool {
     let point_size = [Decoration::BuiltIn as u32, BuiltIn::PointSize as u32];

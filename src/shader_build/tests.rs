@@ -386,6 +386,15 @@ fn textures_with_samplers_and_sizes_of_points_are_told() {
     {
         assert_eq!(reflect_embedded(name).writes_point_size, writes, "{name}");
     }
+    // Blocks of seven components: place, size and two distances.
+    for (name, components) in [
+        ("test/splat-point.vert", [0, 7]),
+        ("test/strip.geom", [7, 7]),
+        ("test/splat.frag", [0, 0]),
+        ("terrain/show.frag", [4, 0]),
+    ] {
+        assert_eq!(reflect_embedded(name).built_in_components, components, "{name}");
+    }
     let strip = reflect_embedded("test/strip.geom");
     assert_eq!((strip.primitive_vertices, strip.emitted_vertices), (Some(1), Some(4)));
 }

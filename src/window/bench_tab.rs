@@ -7,19 +7,19 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use egui::{Context, Grid, ScrollArea, Ui};
-use serde_json::Value;
 
 use super::interface::{CommandUse, Interface};
 use super::passes_panel::milliseconds;
 use super::program;
 use super::protocol::{Request, Verb};
 use crate::gpu::for_another_process;
+use crate::report::{Record, Run, json};
 
 /// The benchmark that runs, or ran last.
 #[derive(Default)]
 pub struct Bench {
     running: Option<Running>,
-    record: Option<Value>,
+    record: Option<Record>,
     /// File of the record.
     path: Option<PathBuf>,
     problem: Option<String>,
@@ -101,11 +101,14 @@ impl Bench {
     }
 
     fn end(&mut self, mut running: Running, has_succeeded: bool) {
-        self.record = std::fs::read(&running.path).ok().and_then(|text| serde_json::from_slice(&text).ok());
-        if !has_succeeded || self.record.is_none() {
+        let record = json::read(&running.path);
+        if !has_succeeded {
             let last = running.last_line.take().and_then(|reader| reader.join().ok().flatten());
             self.problem = Some(format!("benchmark: {}", last.as_deref().unwrap_or("it ended without a word")));
+        } else if let Err(error) = &record {
+            self.problem = Some(format!("benchmark: {error}"));
         }
+        self.record = record.ok();
         self.path = Some(std::mem::take(&mut running.path));
     }
 }
@@ -139,10 +142,9 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
         }
     });
     let Some(record) = &face.bench.record else { return };
-    let runs = record["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            for (index, run) in runs.iter().enumerate() {
+            for (index, run) in record.runs.iter().enumerate() {
                 Grid::new(("record", index)).striped(true).show(ui, |ui| show_run(ui, run));
                 ui.separator();
             }
@@ -150,16 +152,16 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
     });
 }
 
-fn show_run(ui: &mut Ui, run: &Value) {
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    ui.strong(text(&run["variant"]));
-    ui.monospace(milliseconds(run["frame_ms"]["median"].as_f64()));
+fn show_run(ui: &mut Ui, run: &Run) {
+    ui.strong(run.variant.as_str());
+    ui.monospace(milliseconds(run.median_frame_ms()));
     ui.weak("ms a frame");
     ui.end_row();
-    for pass in run["passes"].as_array().into_iter().flatten() {
-        ui.label(text(&pass["name"]));
-        ui.monospace(milliseconds(pass["gpu_ms"]["median"].as_f64()));
-        ui.monospace(milliseconds(pass["host_ms"]["median"].as_f64()));
+    for pass in &run.passes {
+        ui.label(pass.name.as_str());
+        for time in [&pass.gpu_ms, &pass.host_ms] {
+            ui.monospace(milliseconds(time.as_ref().map(|time| time.median)));
+        }
         ui.end_row();
     }
 }
@@ -199,6 +201,20 @@ mod tests {
         bench.end(running, false);
         assert_eq!(bench.record, None);
         assert!(bench.problem.is_some());
+    }
+
+    #[test]
+    fn one_whose_record_is_too_large_to_be_read_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        let mut running = Running::start(Command::new("true"), path.clone()).unwrap();
+        assert!(running.child.wait().unwrap().success());
+        std::fs::File::create(&path).unwrap().set_len(8 << 30).unwrap();
+        let mut bench = Bench::default();
+        bench.end(running, true);
+        assert_eq!(bench.record, None);
+        let problem = bench.problem.unwrap();
+        assert!(problem.starts_with("benchmark: ") && problem.contains("exceed the limit"), "{problem}");
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! | `FUMAROLE_LAYER_LACKS` | features by the names of `fumarole devices`, comma-separated |
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary`, `present-fences` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
-//! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
+//! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher, and alignments, where they are lower |
 //! | `FUMAROLE_LAYER_HEAPS` | `all` or bytes: memory beyond the device's heaps, or beyond so much, is refused |
 //! | `FUMAROLE_LAYER_VULKAN` | `1.1`: the version of Vulkan that the device has, where it is higher |
 //! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |

@@ -95,23 +95,62 @@ fn mask_properties(properties: &mut vk::PhysicalDeviceProperties) {
 }
 
 fn mask_limits(limits: &mut vk::PhysicalDeviceLimits) {
-    lower("max-image-dimension-2d", &mut limits.max_image_dimension2_d);
-    lower("max-image-dimension-3d", &mut limits.max_image_dimension3_d);
-    lower("max-image-array-layers", &mut limits.max_image_array_layers);
-    lower("max-framebuffer-size", &mut limits.max_framebuffer_width);
-    lower("max-framebuffer-size", &mut limits.max_framebuffer_height);
-    lower("max-color-attachments", &mut limits.max_color_attachments);
-    lower("max-storage-buffer-range", &mut limits.max_storage_buffer_range);
-    lower("max-uniform-buffer-range", &mut limits.max_uniform_buffer_range);
-    lower("max-push-constants-size", &mut limits.max_push_constants_size);
-    lower("max-compute-work-group-invocations", &mut limits.max_compute_work_group_invocations);
-    lower("max-draw-indexed-index-value", &mut limits.max_draw_indexed_index_value);
-    lower("max-per-stage-descriptor-storage-buffers", &mut limits.max_per_stage_descriptor_storage_buffers);
-    for count in &mut limits.max_compute_work_group_count {
-        lower("max-compute-work-group-count", count);
+    let counts = [
+        ("max-image-dimension-2d", &mut limits.max_image_dimension2_d),
+        ("max-image-dimension-3d", &mut limits.max_image_dimension3_d),
+        ("max-image-array-layers", &mut limits.max_image_array_layers),
+        ("max-framebuffer-size", &mut limits.max_framebuffer_width),
+        ("max-framebuffer-size", &mut limits.max_framebuffer_height),
+        ("max-color-attachments", &mut limits.max_color_attachments),
+        ("max-storage-buffer-range", &mut limits.max_storage_buffer_range),
+        ("max-uniform-buffer-range", &mut limits.max_uniform_buffer_range),
+        ("max-push-constants-size", &mut limits.max_push_constants_size),
+        ("max-sampler-allocation-count", &mut limits.max_sampler_allocation_count),
+        ("max-memory-allocation-count", &mut limits.max_memory_allocation_count),
+        ("max-compute-work-group-invocations", &mut limits.max_compute_work_group_invocations),
+        ("max-compute-shared-memory-size", &mut limits.max_compute_shared_memory_size),
+        ("max-draw-indexed-index-value", &mut limits.max_draw_indexed_index_value),
+        ("max-vertex-input-attributes", &mut limits.max_vertex_input_attributes),
+        ("max-vertex-input-bindings", &mut limits.max_vertex_input_bindings),
+        ("max-vertex-input-attribute-offset", &mut limits.max_vertex_input_attribute_offset),
+        ("max-vertex-input-binding-stride", &mut limits.max_vertex_input_binding_stride),
+        ("max-vertex-output-components", &mut limits.max_vertex_output_components),
+        ("max-geometry-shader-invocations", &mut limits.max_geometry_shader_invocations),
+        ("max-geometry-input-components", &mut limits.max_geometry_input_components),
+        ("max-geometry-output-components", &mut limits.max_geometry_output_components),
+        ("max-geometry-output-vertices", &mut limits.max_geometry_output_vertices),
+        ("max-geometry-total-output-components", &mut limits.max_geometry_total_output_components),
+        ("max-fragment-input-components", &mut limits.max_fragment_input_components),
+        ("max-fragment-output-attachments", &mut limits.max_fragment_output_attachments),
+        ("max-fragment-combined-output-resources", &mut limits.max_fragment_combined_output_resources),
+        ("max-bound-descriptor-sets", &mut limits.max_bound_descriptor_sets),
+        ("max-per-stage-resources", &mut limits.max_per_stage_resources),
+        ("max-per-stage-descriptor-samplers", &mut limits.max_per_stage_descriptor_samplers),
+        ("max-per-stage-descriptor-uniform-buffers", &mut limits.max_per_stage_descriptor_uniform_buffers),
+        ("max-per-stage-descriptor-storage-buffers", &mut limits.max_per_stage_descriptor_storage_buffers),
+        ("max-per-stage-descriptor-sampled-images", &mut limits.max_per_stage_descriptor_sampled_images),
+        ("max-per-stage-descriptor-storage-images", &mut limits.max_per_stage_descriptor_storage_images),
+        ("max-descriptor-set-samplers", &mut limits.max_descriptor_set_samplers),
+        ("max-descriptor-set-uniform-buffers", &mut limits.max_descriptor_set_uniform_buffers),
+        ("max-descriptor-set-storage-buffers", &mut limits.max_descriptor_set_storage_buffers),
+        ("max-descriptor-set-sampled-images", &mut limits.max_descriptor_set_sampled_images),
+        ("max-descriptor-set-storage-images", &mut limits.max_descriptor_set_storage_images),
+    ];
+    counts.into_iter().for_each(|(name, count)| lower(name, count));
+    for (name, of_axes) in [
+        ("max-compute-work-group-count", &mut limits.max_compute_work_group_count[..]),
+        ("max-compute-work-group-size", &mut limits.max_compute_work_group_size[..]),
+        ("max-viewport-dimensions", &mut limits.max_viewport_dimensions[..]),
+    ] {
+        of_axes.iter_mut().for_each(|count| lower(name, count));
     }
-    for size in &mut limits.max_compute_work_group_size {
-        lower("max-compute-work-group-size", size);
+    for (name, bytes) in [
+        ("min-uniform-buffer-offset-alignment", &mut limits.min_uniform_buffer_offset_alignment),
+        ("min-storage-buffer-offset-alignment", &mut limits.min_storage_buffer_offset_alignment),
+        ("buffer-image-granularity", &mut limits.buffer_image_granularity),
+        ("non-coherent-atom-size", &mut limits.non_coherent_atom_size),
+    ] {
+        *bytes = (*bytes).max(limit(name).unwrap_or(0));
     }
     if let Some(size) = limit("max-point-size") {
         limits.point_size_range[1] = limits.point_size_range[1].min(size as f32);

@@ -22,7 +22,7 @@ use super::outcome;
 use super::processes::without;
 use super::reading;
 use super::watch::interrupted;
-use crate::file::check_writable;
+use crate::file::{check_writable, is_pipe};
 use crate::measure::Variant;
 use crate::measure::measure::Schedule;
 use crate::measure::parameter::Given;
@@ -304,6 +304,13 @@ impl<S: Study> Ascent<'_, S> {
         let csv = self.csv.clone().unwrap_or_else(|| file(".csv"));
         outcome::check_apart([&json, &csv], &reading::by_study(&self.setup, self.machine))?;
         // Before a device is opened.
+        if is_pipe(&json) {
+            return Err(Failure::Input(format!(
+                "writing {}: it is a pipe, which takes one record, and stress writes one after every step; name a regular \
+                 file, or give --json - to have the last one printed",
+                json.display()
+            )));
+        }
         let file = File::new(json.clone());
         let left = file.left(self.limits.anew)?;
         check_writable(&json)?;

@@ -79,7 +79,7 @@ type Lower = fn(&mut vk::PhysicalDeviceLimits);
 #[test]
 fn nothing_is_made_beyond_the_limits() {
     let _alone = alone();
-    let cases: [(Work, Lower, &str); 22] = [
+    let cases: [(Work, Lower, &str); 23] = [
         (points, |l| l.max_framebuffer_width = 7, "target: width in texels 8 is beyond this device's limit of 7"),
         (points, |l| l.max_framebuffer_height = 7, "target: height in texels 8 is"),
         (area, |l| l.max_framebuffer_width = 7, "pass area: width in pixels 8 is"),
@@ -105,7 +105,9 @@ fn nothing_is_made_beyond_the_limits() {
             "(shader test/strip.geom): count of locations that a stage gives",
         ),
         (quads, |l| l.max_geometry_output_vertices = 3, "count of vertices of a geometry stage 4 is"),
-        (quads, |l| l.max_geometry_total_output_components = 31, "components of a geometry stage's vertices 32 is"),
+        // Four vertices of a colour and the seven components of the block of built-ins.
+        (quads, |l| l.max_geometry_total_output_components = 43, "components of a geometry stage's vertices 44 is"),
+        (points, |l| l.max_vertex_output_components = 10, "built-ins among them, 11 is"),
         (quads, |l| l.max_geometry_shader_invocations = 0, "count of invocations of a geometry stage 1 is"),
         (
             sum,

@@ -4,7 +4,7 @@
 //! their content, whatever their path. What else may shift a time (device, driver, program, shaders, ...) may be what is
 //! compared: [`super::conditions`] lists it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -74,6 +74,11 @@ pub(super) struct Configuration<'a> {
 }
 
 impl<'a> Configuration<'a> {
+    /// Paper and variant.
+    fn method(&self) -> (&'a str, &'a str) {
+        (&self.first.paper, &self.first.variant)
+    }
+
     /// The first run.
     pub fn first(&self) -> &'a Run {
         self.first
@@ -156,19 +161,23 @@ pub(super) struct Matched<'a> {
 pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
     let mut warnings = Vec::new();
     let a = configurations("A", a, Design::Processes, &mut warnings)?;
-    let mut b = configurations("B", b, Design::Processes, &mut warnings)?;
+    let b = configurations("B", b, Design::Processes, &mut warnings)?;
+    let places = places(&b);
+    let mut b: Vec<Option<Configuration>> = b.into_iter().map(Some).collect();
     let (mut pairs, mut alone) = (vec![], vec![]);
     for configuration in a {
-        match b.iter().position(|other| other.fields == configuration.fields) {
-            Some(index) => pairs.push((configuration, b.remove(index))),
+        match places.get(&configuration.fields).and_then(|of| b[*of].take()) {
+            Some(other) => pairs.push((configuration, other)),
             None => alone.push(configuration),
         }
     }
-    for configuration in &alone {
-        let variant = |c: &Configuration| (c.first.paper.clone(), c.first.variant.clone());
+    let b: Vec<Configuration> = b.into_iter().flatten().collect();
+    let methods: HashSet<_> = b.iter().map(Configuration::method).collect();
+    let conflict = alone.iter().find(|one| pairs.is_empty() || methods.contains(&one.method()));
+    if let Some(configuration) = conflict {
         let nearest = b
             .iter()
-            .filter(|other| pairs.is_empty() || variant(other) == variant(configuration))
+            .filter(|other| pairs.is_empty() || other.method() == configuration.method())
             .min_by_key(|other| differences(configuration, other).len());
         if let Some(other) = nearest {
             return Err(different(configuration, other));
@@ -189,11 +198,19 @@ pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matche
     let mut warnings = Vec::new();
     let a = configurations("A", a, Design::Blocks, &mut warnings)?;
     let b = configurations("B", b, Design::Blocks, &mut warnings)?;
-    let method = |c: &Configuration| (c.first.paper.clone(), c.first.variant.clone());
-    let distance = |at: usize, of: usize| (method(&a[at]) != method(&b[of]), differences(&a[at], &b[of]).len(), at, of);
-    let mut distances: Vec<_> = (0..a.len()).flat_map(|at| (0..b.len()).map(move |of| distance(at, of))).collect();
+    let places = places(&b);
+    let mut partners: Vec<Option<usize>> = a.iter().map(|one| places.get(&one.fields).copied()).collect();
+    let mut taken = vec![false; b.len()];
+    partners.iter().flatten().for_each(|of| taken[*of] = true);
+    // Equal ones are nearest; only what is left is looked at by twos.
+    let others: Vec<usize> = (0..b.len()).filter(|of| !taken[*of]).collect();
+    let distance = |at: usize, of: usize| {
+        let (one, other): (&Configuration, &Configuration) = (&a[at], &b[of]);
+        (one.method() != other.method(), differences(one, other).len(), at, of)
+    };
+    let alone = (0..a.len()).filter(|at| partners[*at].is_none());
+    let mut distances: Vec<_> = alone.flat_map(|at| others.iter().map(move |of| distance(at, *of))).collect();
     distances.sort_unstable();
-    let (mut partners, mut taken) = (vec![None; a.len()], vec![false; b.len()]);
     for (_, _, at, of) in distances {
         if partners[at].is_none() && !taken[of] {
             (partners[at], taken[of]) = (Some(of), true);
@@ -226,30 +243,35 @@ fn configurations<'a>(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Configuration<'a>>, CompareError> {
     let mut found: Vec<Configuration> = vec![];
+    let mut places: HashMap<BTreeMap<String, String>, usize> = HashMap::new();
+    let mut measured: HashSet<(usize, Vec<u64>)> = HashSet::new();
     for input in inputs {
-        let mut here: Vec<(BTreeMap<String, String>, u32, Vec<&Run>)> = vec![];
+        let mut here: Vec<(usize, Vec<&Run>)> = vec![];
+        let mut known: HashMap<(usize, u32), usize> = HashMap::new();
         for run in &input.record.runs {
-            let fields = fields(run);
-            let known = here.iter_mut().find(|(known, process, _)| *known == fields && *process == run.process);
-            match known {
-                Some((_, _, runs)) => runs.push(run),
-                None => here.push((fields, run.process, vec![run])),
-            }
-        }
-        for (fields, _, runs) in here {
-            let index = found.iter().position(|known| known.fields == fields);
-            let index = index.unwrap_or_else(|| {
-                let (first, source) = (runs[0], input.name.as_str());
+            let index = *places.entry(fields(run)).or_insert_with_key(|fields| {
+                let (fields, source) = (fields.clone(), input.name.as_str());
                 let (alternative, timestamp_ms, processes) = (String::new(), 0.0, vec![]);
-                found.push(Configuration { fields, first, source, alternative, timestamp_ms, processes });
+                found.push(Configuration { fields, first: run, source, alternative, timestamp_ms, processes });
                 found.len() - 1
             });
+            let place = *known.entry((index, run.process)).or_insert(here.len());
+            match here.get_mut(place) {
+                Some((_, runs)) => runs.push(run),
+                None => here.push((index, vec![run])),
+            }
+        }
+        for (index, runs) in here {
             let Configuration { processes, timestamp_ms, .. } = &mut found[index];
             let period_ns = input.record.environment.device.timestamp_period.unwrap_or(0.0);
             *timestamp_ms = timestamp_ms.max(period_ns * 1e-6);
             // The same measurement twice is not two processes: it would make an interval of nothing. In blocks the
             // numbers of processes tell.
-            if design == Design::Processes && processes.iter().any(|known| same_measurement(known, &runs)) {
+            let mut is_repeated = || {
+                let samples = sample_bits(&runs);
+                !samples.is_empty() && !measured.insert((index, samples))
+            };
+            if design == Design::Processes && is_repeated() {
                 let message =
                     format!("side {side}: {} repeats the samples of another process and is counted once", input.name);
                 if !warnings.contains(&message) {
@@ -268,13 +290,15 @@ fn configurations<'a>(
     Ok(found)
 }
 
-fn same_measurement(a: &[&Run], b: &[&Run]) -> bool {
-    let samples = |runs: &[&Run]| -> Vec<f64> {
-        let frames = runs.iter().filter_map(|run| run.frame_ms.as_ref());
-        frames.flat_map(|frame| frame.samples.clone()).collect()
-    };
-    let samples_of_a = samples(a);
-    !samples_of_a.is_empty() && samples_of_a == samples(b)
+/// The place of each configuration on its side; no two are equal.
+fn places(side: &[Configuration]) -> HashMap<BTreeMap<String, String>, usize> {
+    side.iter().enumerate().map(|(at, configuration)| (configuration.fields.clone(), at)).collect()
+}
+
+/// The frames' times, alike for those that are equal.
+fn sample_bits(runs: &[&Run]) -> Vec<u64> {
+    // Zero has two signs, of which the sum has none.
+    runs.iter().flat_map(|run| run.frame_samples()).map(|sample| (sample + 0.0).to_bits()).collect()
 }
 
 /// Everything that fixes the work of a run, by the field's path in the record.

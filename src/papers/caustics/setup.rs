@@ -24,7 +24,7 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::caustics::{Caustics, DRAWN, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshOptions, MeshSource, Samples};
+use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MapOptions, MeshOptions, MeshSource, Samples};
 use crate::scene::{promised_triangles, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
@@ -399,7 +399,7 @@ fn reaching(camera: Camera, receivers: &Bounds) -> Camera {
 /// # Errors
 /// [`Error::Scene`] for a map that cannot be read; [`Error::Input`] for a flat map that is to span a range.
 pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Option<f32>) -> Result<WaterMap, Error> {
-    let mut map = source.load()?;
+    let mut map = source.load_with(MapOptions { overview: 0, has_own_spacing: spacing_m.is_some() })?;
     if let Some(range_m) = range_m {
         let (low, high) = map.range_m();
         let scale = range_m / (high - low);

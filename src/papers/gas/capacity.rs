@@ -32,8 +32,8 @@ pub struct Capacity {
 #[derive(Debug, Clone, Copy)]
 pub struct BufferLimit {
     bytes: u64,
-    /// The parameter to lower where one row is too much, perhaps with one to raise.
-    parameters: &'static str,
+    /// True where the user has set it, below the device's.
+    is_own: bool,
 }
 
 impl BufferLimit {
@@ -44,11 +44,28 @@ impl BufferLimit {
         let heap_bytes = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
         let bytes = u64::from(physical.limits.max_storage_buffer_range).min(heap_bytes / HEAP_DIVISOR);
         match parameters.list_bytes {
-            Some(allowed) if allowed < bytes => {
-                BufferLimit { bytes: allowed, parameters: "size`; or raise `list-bytes" }
-            }
-            _ => BufferLimit { bytes, parameters: "size" },
+            Some(allowed) if allowed < bytes => BufferLimit { bytes: allowed, is_own: true },
+            _ => BufferLimit { bytes, is_own: false },
         }
+    }
+
+    /// The parameter to lower where the picture is too much, perhaps with one to raise.
+    pub fn parameters(self) -> &'static str {
+        if self.is_own { "size`; or raise `list-bytes" } else { "size" }
+    }
+
+    /// The error of a list of which one row of pixels wants more slots.
+    fn refused(self, name: &str, wanted: u32, slot_bytes: u64) -> Error {
+        let object = format!("list of the {name} of a row of pixels");
+        if !self.is_own {
+            let (wanted, limit) = (wanted.into(), self.slots(slot_bytes).into());
+            return Error::Limit { object, what: "count", wanted, limit }.set_by("size");
+        }
+        let (bytes, allowed) = (u64::from(wanted) * slot_bytes, self.bytes);
+        let reason = format!(
+            "its {wanted} entries take {bytes} bytes, and `list-bytes` allows {allowed}; raise `list-bytes` or lower `size`"
+        );
+        Error::Filling { object, reason }
     }
 
     /// Slots of that size. Node numbers have 31 bits.
@@ -83,7 +100,8 @@ impl Capacity {
     /// since the frames to come may want a little more; fewer rows where no buffer holds so much.
     ///
     /// # Errors
-    /// [`Error::Limit`] where one row of the picture wants more than a buffer holds.
+    /// [`Error::Limit`] of the device, or [`Error::Filling`] of what the user allows, for a row of the picture that wants more
+    /// than a buffer holds.
     pub fn grown(self, demand: Capacity, limit: BufferLimit) -> Result<Option<Self>, Error> {
         let mut grown = self;
         for (name, slots, wanted, slot_bytes) in [
@@ -97,9 +115,7 @@ impl Capacity {
             let most = limit.slots(slot_bytes);
             if wanted > most {
                 if self.rows == 1 {
-                    let object = format!("list of the {name} of a row of pixels");
-                    let error = Error::Limit { object, what: "count", wanted: wanted.into(), limit: most.into() };
-                    return Err(error.set_by(limit.parameters));
+                    return Err(limit.refused(name, wanted, slot_bytes));
                 }
                 // Rows differ: not quite as many as would fit if they were all alike.
                 let fraction = f64::from(most) / f64::from(wanted);
@@ -119,7 +135,7 @@ mod tests {
         Parameters { width, height, ..Parameters::default() }
     }
 
-    const LAVAPIPE: BufferLimit = BufferLimit { bytes: 128 << 20, parameters: "size" };
+    const LAVAPIPE: BufferLimit = BufferLimit { bytes: 128 << 20, is_own: false };
 
     #[test]
     fn a_large_picture_is_done_in_bands_whose_lists_fit() {
@@ -137,7 +153,7 @@ mod tests {
     /// Lists grow as far as a buffer goes, then the bands shrink, down to one row and no further.
     #[test]
     fn lists_grow_and_bands_shrink() {
-        let limit = BufferLimit { bytes: 16_000, parameters: "list-bytes" };
+        let limit = BufferLimit { bytes: 16_000, is_own: false };
         let capacity = Capacity { rows: 40, fragments: 100, sections: 50, chunks: 0 };
         assert_eq!(capacity.grown(capacity, limit).unwrap(), None);
         let demand = Capacity { fragments: 160, ..capacity };
@@ -149,6 +165,18 @@ mod tests {
         assert_eq!(capacity.grown(demand, limit).unwrap(), Some(shrunk));
         let row = Capacity { rows: 1, ..capacity };
         let error = row.grown(demand, limit).unwrap_err().to_string();
-        assert!(error.contains("fragments") && error.contains("list-bytes") && error.contains("3000"), "{error}");
+        assert!(error.contains("fragments") && error.contains("`size`") && error.contains("3000"), "{error}");
+        assert!(error.contains("device's limit of 1000") && !error.contains("list-bytes"), "{error}");
+    }
+
+    /// A device that would hold more is not blamed for what the user allows.
+    #[test]
+    fn the_users_own_limit_is_told_as_theirs() {
+        let limit = BufferLimit { bytes: 16_000, is_own: true };
+        let row = Capacity { rows: 1, fragments: 100, sections: 50, chunks: 0 };
+        let error = row.grown(Capacity { fragments: 3000, ..row }, limit).unwrap_err().to_string();
+        let expected = "filling list of the fragments of a row of pixels: its 3000 entries take 48000 bytes, and `list-bytes` \
+                        allows 16000; raise `list-bytes` or lower `size`";
+        assert_eq!(error, expected);
     }
 }

@@ -92,10 +92,7 @@ impl Parameters {
                 ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
             ],
-            passes: Some((
-                if self.list_bytes.is_some() { "size`; or raise `list-bytes" } else { "size" },
-                PASSES * bands + tables,
-            )),
+            passes: Some((limit.parameters(), PASSES * bands + tables)),
             draws: None,
             invocations: vec![
                 ("steps", march),

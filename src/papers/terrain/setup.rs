@@ -26,7 +26,7 @@ use crate::papers::terrain::{
     Terrain, TileCounts, TileFile, Variant, View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
+use crate::scene::{HeightMap, HeightMapSource, MapOptions, Mesh, Voids, promised_triangles, volcano};
 
 /// Samples a side that the images of many devices hold.
 const LARGE_SIDE: u32 = 16_384;
@@ -182,13 +182,17 @@ impl Setup {
         }
     }
 
+    pub(super) fn map_options(&self) -> MapOptions {
+        MapOptions { overview: self.overview, has_own_spacing: self.spacing_m.is_some() }
+    }
+
     pub(super) fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
         let mut map = match source {
             HeightMapSource::Volcano => {
                 self.check_host_memory()?;
                 volcano(self.resolution, self.seed)?
             }
-            other => other.load_overview(self.overview)?,
+            other => other.load_with(self.map_options())?,
         };
         if let Voids::Level(_) = self.voids {
             map = map.with_voids(self.voids, 0.0)?;

@@ -80,7 +80,7 @@ fn rows(setup: &Setup, source: &HeightMapSource) -> Result<RowSource, Error> {
     let rows = match source.path() {
         None if *source == HeightMapSource::Volcano => Some(RowSource::volcano(setup.resolution, setup.seed)?),
         None => None,
-        Some(path) => RowSource::geotiff(path, setup.overview)?,
+        Some(path) => RowSource::geotiff(path, setup.map_options())?,
     };
     if let Some(mut rows) = rows {
         if let Some(spacing_m) = setup.spacing_m {

@@ -43,6 +43,16 @@ struct Start {
     one: u32,
 }
 
+impl Start {
+    /// True where a file of so many bytes has room for all that this promises, of the smallest tiles.
+    fn fits(&self, size_bytes: u64) -> bool {
+        let tile_bytes = u64::from(TILE) * u64::from(TILE) * size_of::<u16>() as u64;
+        let tiles_bytes = self.tiles.checked_mul(size_of::<u32>() as u64 + tile_bytes);
+        let end = tiles_bytes.and_then(|bytes| bytes.checked_add(HEAD_BYTES));
+        self.record_bytes <= HEAD_BYTES - size_of::<Start>() as u64 && end.is_some_and(|end| end <= size_bytes)
+    }
+}
+
 /// The tiles of a map's levels on a disk.
 #[derive(Debug)]
 pub struct TileFile {
@@ -210,9 +220,8 @@ pub fn read_head(mut file: File, path: &Path, interpolation: Interpolation) -> O
     let size_bytes = file.metadata().ok()?.len();
     let mut start = Start::zeroed();
     file.read_exact(bytes_of_mut(&mut start)).ok()?;
-    let is_known = start.magic == MAGIC && start.one == 1;
-    let fits = start.record_bytes <= HEAD_BYTES - size_of::<Start>() as u64 && start.tiles <= size_bytes / 4;
-    if !(is_known && fits) {
+    // Before its checksum is known it may promise anything.
+    if start.magic != MAGIC || start.one != 1 || !start.fits(size_bytes) {
         return None;
     }
     let mut record = vec![0; start.record_bytes as usize];
@@ -220,7 +229,10 @@ pub fn read_head(mut file: File, path: &Path, interpolation: Interpolation) -> O
     let mut checksums = vec![0_u32; start.tiles as usize];
     file.seek(SeekFrom::Start(HEAD_BYTES)).ok()?;
     file.read_exact(cast_slice_mut(&mut checksums)).ok()?;
-    if crc32fast::hash(&[&record[..], cast_slice(&checksums)].concat()) != start.checksum {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&record);
+    hasher.update(cast_slice(&checksums));
+    if hasher.finalize() != start.checksum {
         return None;
     }
     let map = HeightMap::from_record(std::str::from_utf8(&record).ok()?)?;
@@ -315,6 +327,25 @@ mod tests {
         let error = open(Some(&file.path().join("tiles")), &map, Interpolation::Bilinear).unwrap_err().to_string();
         assert!(error.contains("`map` land") && error.contains("XDG_CACHE_HOME"), "{error}");
         assert!(error.contains("`no-cache`"), "{error}");
+    }
+
+    /// Checksums take less than an eight-thousandth of a file's size, whatever its begin says.
+    #[test]
+    fn a_head_promises_no_more_than_its_file_holds() {
+        let start = |tiles, record_bytes| Start { magic: MAGIC, tiles, record_bytes, checksum: 0, one: 1 };
+        let size_bytes = 64 << 30;
+        let most = (size_bytes - HEAD_BYTES) / (4 + 2 * 128 * 128);
+        for (tiles, fits) in [
+            (0, true),
+            (most, true),
+            (most + 1, false),
+            (size_bytes / 4, false),
+            (u64::MAX / 4, false),
+            (u64::MAX, false),
+        ] {
+            assert_eq!(start(tiles, 0).fits(size_bytes), fits, "{tiles}");
+        }
+        assert!(4 * most < size_bytes / 8_000 && !start(1, HEAD_BYTES).fits(size_bytes));
     }
 
     /// A damage of the head, of the checksums or of the length is seen when the file is opened, and it is made anew.

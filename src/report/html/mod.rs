@@ -2,7 +2,8 @@
 //! paper's rows beside ours, memory, limits, environment and the command of every number; pictures under a divider; the
 //! tables and plots of experiments; verdicts first where two sides are compared.
 //!
-//! Everything that comes from a record is escaped by the template; pictures and plots are images, which run nothing; the
+//! Everything that comes from a record is escaped by the template, and characters that hide or turn text about are shown as
+//! escapes; pictures and plots are images, which run nothing; the
 //! page's policy lets no script run but its own.
 
 mod bars;

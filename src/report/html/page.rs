@@ -1,5 +1,7 @@
 //! The page around the runs.
 
+use std::collections::{HashMap, HashSet};
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -11,6 +13,7 @@ use super::tables::tables;
 use super::{Contents, Pair, Picture, Section, Source};
 use crate::report::console::counted_warnings;
 use crate::report::record::{Environment, Record};
+use crate::report::text::escaped;
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -63,7 +66,12 @@ pub fn page(contents: &Contents) -> String {
             }
         }
     };
-    markup.into_string()
+    visible(&markup.into_string())
+}
+
+/// The text with its hidden characters as JSON writes them; tabs stay, by which listings are laid out.
+fn visible(text: &str) -> String {
+    text.split('\t').map(|part| escaped(part, false)).collect::<Vec<_>>().join("\t")
 }
 
 fn data(kind: &str, bytes: &[u8]) -> String {
@@ -253,15 +261,15 @@ fn pictures(source: &Source) -> Markup {
     let image = |picture: &Picture| {
         html! { img src=(data("image/png", &picture.png)) alt=(format!("picture of {}", name(picture.run))); }
     };
-    let is_base = |picture: &Picture| {
-        source.pictures.iter().any(|other| other.difference.is_some_and(|difference| difference.base == picture.run))
-    };
+    let differences = source.pictures.iter().filter_map(|picture| picture.difference.as_ref());
+    let bases: HashSet<usize> = differences.map(|difference| difference.base).collect();
+    let of_runs: HashMap<usize, &Picture> = source.pictures.iter().map(|picture| (picture.run, picture)).collect();
     html! {
         div.pictures {
-            @for picture in source.pictures.iter().filter(|picture| !is_base(picture)) {
+            @for picture in source.pictures.iter().filter(|picture| !bases.contains(&picture.run)) {
                 figure {
                     @if let Some(difference) = &picture.difference {
-                        @if let Some(base) = source.pictures.iter().find(|other| other.run == difference.base) {
+                        @if let Some(base) = of_runs.get(&difference.base) {
                             (divided(&image(base), &image(picture)))
                         }
                         figcaption {

@@ -242,6 +242,32 @@ fn no_text_of_a_record_is_markup() {
     assert!(places.len() > 40, "{places:?}");
 }
 
+/// Of what a browser would not show, or would show in another order.
+#[test]
+fn no_text_of_a_record_hides_or_turns_about() {
+    let hostile = "\u{1b}[2J\0\u{9b}\u{202e}\u{2066}\r";
+    let mut document = serde_json::to_value(profiled()).unwrap();
+    hostile_texts(&mut document, "", hostile);
+    let mut contents = contents();
+    contents.title = hostile.to_owned();
+    contents.warnings = vec![hostile.to_owned()];
+    contents.records[0].name = hostile.to_owned();
+    contents.records[0].record = serde_json::from_value(document).unwrap();
+    let stages = contents.records[0].record.runs[0].profile.as_mut().unwrap().compilers[0].stages.as_mut().unwrap();
+    stages[0].texts.insert("SASS".to_owned(), "MOV\tR1,\tR2\nEXIT".to_owned());
+    let text = page(&contents);
+    let is_shown = |letter: char| "\n\t".contains(letter) || !(letter.is_control() || hostile.contains(letter));
+    let hidden: Vec<char> = text.chars().filter(|letter| letter.is_control() || !letter.is_ascii()).collect();
+    assert!(hidden.iter().all(|letter| is_shown(*letter)), "{hidden:?}");
+    let escapes = "\\u001b[2J\\u0000\\u009b\\u202e\\u2066\\u000d";
+    for place in ["</title>", "/runs/0/variant", "/runs/0/passes/0/name", "/environment/device/name"] {
+        assert!(text.contains(&format!("{escapes}{place}")), "{place}");
+    }
+    assert!(text.contains("<pre>MOV\tR1,\tR2\nEXIT</pre>"));
+    // The policy lets this very script run.
+    assert!(text.contains(include_str!("script.js")) && text.contains(include_str!("style.css")));
+}
+
 fn texts_of(value: &Value, found: &mut Vec<String>) {
     match value {
         Value::String(text) => found.push(text.clone()),

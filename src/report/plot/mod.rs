@@ -16,6 +16,8 @@ use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
+use super::text::escaped;
+
 /// Width and height of every plot in pixels.
 pub const SIZE: (u32, u32) = (960, 540);
 
@@ -49,7 +51,8 @@ fn render(title: &str, draw: impl FnOnce(&Canvas) -> Result<(), Box<dyn Error>>)
             .and_then(|()| canvas.present().map_err(Into::into))
     };
     drawn.map_err(|error| PlotError::Drawing { title: title.to_owned(), message: error.to_string() })?;
-    Ok(svg)
+    // XML has no way to write most control characters.
+    Ok(escaped(&svg, false).into_owned())
 }
 
 fn chart<'a, 'b>(canvas: &'b Canvas<'a>, title: &str) -> ChartBuilder<'b, 'b, SVGBackend<'a>> {
@@ -178,6 +181,24 @@ mod tests {
             for name in &named {
                 assert!(texts(&svg).contains(name), "{name}");
             }
+        }
+    }
+
+    /// A name with a control character would make a file that no viewer reads.
+    #[test]
+    fn no_text_hides_or_turns_about() {
+        let hostile = |place: &str| format!("{place}\u{1b}[2J\0\u{9b}\u{202e}");
+        let bars = BarChart {
+            title: hostile("title"),
+            y_label: hostile("y"),
+            groups: vec![hostile("group")],
+            series: vec![BarSeries { name: hostile("series"), values: vec![Some(1.0)] }],
+        };
+        let svg = bars.to_svg().unwrap();
+        assert!(svg.chars().all(|letter| letter == '\n' || !(letter.is_control() || letter == '\u{202e}')), "{svg}");
+        let texts = texts(&svg);
+        for place in ["title", "y", "group", "series"] {
+            assert!(texts.contains(&format!("{place}\\u001b[2J\\u0000\\u009b\\u202e")), "{place} in {texts:?}");
         }
     }
 

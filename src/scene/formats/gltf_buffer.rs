@@ -22,6 +22,8 @@ pub(super) struct Buffers<'a> {
     /// Bytes and the length that the document claims, which they have.
     buffers: Vec<(Rc<Cow<'a, [u8]>>, usize)>,
     files: HashMap<PathBuf, Rc<Cow<'a, [u8]>>>,
+    /// The file that each URI means: asking the system takes far longer than reading the URI.
+    paths: HashMap<String, PathBuf>,
 }
 
 impl<'a> Buffers<'a> {
@@ -68,8 +70,15 @@ impl<'a> Buffers<'a> {
         if uri.contains(':') {
             return Err("only data URIs and relative paths are supported".to_owned());
         }
-        let name = percent_decoded(uri).ok_or("its path is not valid percent-encoded UTF-8")?;
-        let path = file::below(directory, Path::new(&name)).map_err(shown)?;
+        let path = match self.paths.get(uri) {
+            Some(path) => path.clone(),
+            None => {
+                let name = percent_decoded(uri).ok_or("its path is not valid percent-encoded UTF-8")?;
+                let path = file::below(directory, Path::new(&name)).map_err(shown)?;
+                self.paths.insert(uri.to_owned(), path.clone());
+                path
+            }
+        };
         if let Some(known) = self.files.get(&path) {
             return Ok(known.clone());
         }

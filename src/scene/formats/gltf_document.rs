@@ -101,6 +101,27 @@ fn check_memory(text: &[u8], outline: &Outline) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Other files that a document names; the rest of it is passed over.
+#[derive(Deserialize)]
+struct Named {
+    #[serde(default)]
+    buffers: Vec<NamedBuffer>,
+}
+
+#[derive(Deserialize)]
+struct NamedBuffer {
+    uri: Option<String>,
+}
+
+/// The URIs of a document's buffers, in their order; none of a text that its reader refuses for what it would take.
+pub fn buffer_uris(text: &[u8]) -> Vec<String> {
+    let named = || -> Option<Named> {
+        check_memory(text, &from_slice(text).ok()?).ok()?;
+        from_slice(text).ok()
+    };
+    named().into_iter().flat_map(|named| named.buffers).filter_map(|buffer| buffer.uri).collect()
+}
+
 /// True for a text that says that it is of version 1.
 fn is_version_1(text: &[u8]) -> bool {
     #[derive(Deserialize)]

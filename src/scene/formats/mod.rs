@@ -5,7 +5,7 @@
 mod gltf;
 mod gltf_accessor;
 pub(super) mod gltf_buffer;
-mod gltf_document;
+pub(super) mod gltf_document;
 mod obj;
 mod ply;
 mod stl;
@@ -25,7 +25,7 @@ use super::mesh_cache::{self, Key};
 use super::{Error, Mesh, file};
 
 /// Largest file that is read; 32-bit vertex numbers do not reach much further.
-const MAX_FILE_BYTES: u64 = 4 << 30;
+pub(super) const MAX_FILE_BYTES: u64 = 4 << 30;
 
 type Read = fn(&mut Stream<'_>, directory: &Path) -> Result<Parts, Stop>;
 

@@ -145,6 +145,11 @@ pub(super) fn all_void() -> Fault {
     Fault::new(Place::Whole, "all its samples are void; a map needs at least one height")
 }
 
+/// True for a height of a file that is `void` as the file, or as 32 bits, have it.
+pub(super) fn is_same(height: f64, void: f64) -> bool {
+    height == void || height as f32 == void as f32
+}
+
 /// True when a value is the one that stands for no height.
 ///
 /// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree roughly only.

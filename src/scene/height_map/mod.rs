@@ -23,6 +23,6 @@ pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
 pub use rows::{RowSource, Rows};
 pub use shown::{Shown, shown};
-pub use source::HeightMapSource;
+pub use source::{HeightMapSource, MapOptions};
 pub use void_samples::{Suspect, Voids};
 pub use volcano::volcano;

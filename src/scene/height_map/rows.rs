@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::formats::GeoTiffRows;
 use super::slope::SlopeMeter;
 use super::volcano::VolcanoRows;
-use super::{HeightMap, Samples};
+use super::{HeightMap, MapOptions, Samples};
 use crate::scene::Error;
 use crate::scene::loading::Conditions;
 
@@ -63,9 +63,9 @@ impl RowSource {
     /// with voids, which are filled from all their neighbours.
     ///
     /// # Errors
-    /// As [`HeightMapSource::load_overview`](super::HeightMapSource::load_overview).
-    pub fn geotiff(path: &Path, overview: u32) -> Result<Option<Self>, Error> {
-        let Some(rows) = GeoTiffRows::survey(path, overview)? else { return Ok(None) };
+    /// As [`HeightMapSource::load_with`](super::HeightMapSource::load_with).
+    pub fn geotiff(path: &Path, options: impl Into<MapOptions>) -> Result<Option<Self>, Error> {
+        let Some(rows) = GeoTiffRows::survey(path, options.into())? else { return Ok(None) };
         Ok(Some(RowSource { map: rows.map()?, factor: 1.0, source: Source::GeoTiff(rows) }))
     }
 

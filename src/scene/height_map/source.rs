@@ -22,6 +22,22 @@ pub enum HeightMapSource {
     File(PathBuf),
 }
 
+/// Ways to read the file of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MapOptions {
+    /// Number of an overview of a GeoTIFF in place of its data, 1 the finest; 0 is the data, as any source has them.
+    pub overview: u32,
+    /// Another spacing takes the place of the file's: one that no map may have is then no fault, and tells no place either.
+    pub has_own_spacing: bool,
+}
+
+/// An overview, of the spacing that the file has.
+impl From<u32> for MapOptions {
+    fn from(overview: u32) -> Self {
+        MapOptions { overview, has_own_spacing: false }
+    }
+}
+
 impl HeightMapSource {
     /// Samples a side of the built-in volcano.
     pub const VOLCANO_SIDE: u32 = 1_024;
@@ -44,15 +60,15 @@ impl HeightMapSource {
         }
     }
 
-    /// An overview of a GeoTIFF in place of its data, 1 the finest; 0 is the data, as any source has them.
+    /// As [`Self::load`], read by these options.
     ///
     /// # Errors
     /// As [`Self::load`]; an overview that the source does not have.
-    pub fn load_overview(&self, overview: u32) -> Result<HeightMap, Error> {
-        match self {
-            Self::File(path) => formats::load(path, overview),
-            _ if overview == 0 => self.load(),
-            _ => Err(Error::HeightMap {
+    pub fn load_with(&self, options: impl Into<MapOptions>) -> Result<HeightMap, Error> {
+        match (self, options.into()) {
+            (Self::File(path), options) => formats::load(path, options),
+            (_, MapOptions { overview: 0, .. }) => self.load(),
+            (_, MapOptions { overview, .. }) => Err(Error::HeightMap {
                 reason: format!("`overview` {overview}: only a GeoTIFF has any, and {self} is none"),
             }),
         }
@@ -86,7 +102,13 @@ impl fmt::Display for HeightMapSource {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::RowSource;
     use crate::scene::error::Asset;
+    use glam::DVec2;
+    use std::io::Cursor;
+    use tiff::encoder::TiffEncoder;
+    use tiff::encoder::colortype::Gray8;
+    use tiff::tags::Tag;
 
     #[test]
     fn text_round_trips() {
@@ -109,6 +131,43 @@ mod tests {
         let Ok(source) = "nope".parse::<HeightMapSource>();
         let message = source.load().unwrap_err().to_string();
         assert!(message.contains("height map nope") && message.contains(names), "{message}");
+    }
+
+    /// Of each format that states one in its own words.
+    #[test]
+    fn a_spacing_that_no_map_may_have_is_no_fault_where_another_is_given() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).unwrap();
+            HeightMapSource::File(path)
+        };
+        let mut tiff = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut tiff).unwrap();
+        let mut picture = encoder.new_image::<Gray8>(2, 2).unwrap();
+        picture.encoder().write_tag(Tag::ModelPixelScaleTag, &[1e300_f64, 1e300, 0.0][..]).unwrap();
+        picture.write_data(&[7, 8, 9, 7]).unwrap();
+        let header = |dim: &str| format!("NCOLS 2\nNROWS 2\nULXMAP 7\nULYMAP 45\nXDIM {dim}\nYDIM {dim}\n");
+        write("a.hdr", header("1e-300").as_bytes());
+        let sources = [
+            write("a.asc", b"ncols 2\nnrows 2\ncellsize 1e7\n7 8\n9 7\n"),
+            write("a.bil", &[7, 8, 9, 7]),
+            write("a.tif", tiff.get_ref()),
+        ];
+        let given = MapOptions { has_own_spacing: true, ..MapOptions::default() };
+        for source in &sources {
+            let message = source.load().unwrap_err().to_string();
+            assert!(message.contains(": it makes samples lie "), "{message}");
+            let map = source.load_with(given).unwrap().with_spacing_m(DVec2::splat(30.0)).unwrap();
+            assert_eq!((map.range_m(), map.coordinates(), map.geographic()), ((7.0, 9.0), None, None), "{source}");
+        }
+        let tiff = sources[2].path().unwrap();
+        assert!(RowSource::geotiff(tiff, 0).is_err());
+        assert_eq!(RowSource::geotiff(tiff, given).unwrap().unwrap().map().spacing_m(), DVec2::ONE);
+        // A spacing that a map may have tells its place, whatever stands in for it.
+        write("a.hdr", header("0.01").as_bytes());
+        let [own, other] = [MapOptions::default(), given].map(|options| sources[1].load_with(options).unwrap());
+        assert!(own.geographic().is_some() && own == other);
     }
 
     #[test]

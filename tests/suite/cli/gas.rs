@@ -398,7 +398,7 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--texture-scale 0", &["--texture-scale 0"]),
         ("--list-bytes 10", &["--list-bytes 10", "at least 4096"]),
         // A row of glass wants more than its four fragments a pixel, and a row is the least that is done at once.
-        ("--preset fig-6 --size 60x8 --list-bytes 4096", &["--list-bytes"]),
+        ("--preset fig-6 --size 60x8 --list-bytes 4096", &["--list-bytes allows 4096", "--size"]),
         ("--object no-such.obj", &["no-such.obj"]),
     ] {
         gas("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);

@@ -85,6 +85,8 @@ fn opposites_of_flags_read_as_they_are() {
         let text = help(&format!("{paper} render"), "--help-all");
         let (_, after) = text.split_once(&format!("      {flag}\n")).unwrap();
         assert!(after.trim_start().starts_with("Switch off: "), "{flag}: {after}");
+        let help = after.split("\n\n").next().unwrap_or_default();
+        assert!(!help.contains(", or "), "{flag}: {help}");
     }
 }
 

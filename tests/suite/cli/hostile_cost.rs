@@ -107,6 +107,13 @@ fn small_files_of_many_triangles() {
     refused(mesh, "instances.gltf", gltf(10_000, 9_000, 1).as_bytes(), &["simplify it"]);
     refused(mesh, "objects.gltf", format!("{{\"nodes\":[{}{{}}]}}", "{},".repeat(1 << 20)).as_bytes(), &["objects"]);
     refused(mesh, "buffers.gltf", gltf(1, 1, 500).as_bytes(), &["positive area"]);
+    // Files by their names, of which each wants a look by the system.
+    let shared = vec![r#"{"byteLength":3,"uri":"two.asc"}"#; 600_000];
+    let missing: Vec<String> = (0..600_000).map(|n| format!(r#"{{"byteLength":3,"uri":"{n:07}"}}"#)).collect();
+    for (buffers, part) in [(shared.join(","), "it has no scene"), (missing.join(","), "buffer 0: No such file")] {
+        let text = format!(r#"{{"asset":{{"version":"2.0"}},"buffers":[{buffers}]}}"#);
+        refused(mesh, "names.gltf", text.as_bytes(), &[part]);
+    }
     let extras = format!("{{\"extras\":[{}0]}}", "0,".repeat(20_000_000));
     refused(mesh, "extras.gltf", extras.as_bytes(), &["no valid glTF"]);
     let trees = |begin: &str, item: &str, end: &str| format!("{begin}{}0{end}", item.repeat(5_000_000)).into_bytes();
@@ -195,6 +202,16 @@ fn mosaics_that_promise() {
     let many: String = (0..60_000).map(|i| part("two.asc", (i, 0), 1)).collect();
     let many = many + &part("gone.asc", (0, 0), 1);
     refused(map, "many.vrt", &mosaic((60_000, 2), &many), &["line 60003: gone.asc: No such file"]);
+    // Packed parts that are good, before one that is not, and of which no sample is a height.
+    let (black, tiff) = (black_png(8_192), black_tiff(8_192));
+    let cut = ("cut.asc", &b"ncols 2\nnrows 2\n1 2 3\n"[..]);
+    for (name, bytes) in [("black.png", &black), ("black.tif", &tiff)] {
+        let small = mosaic((4, 2), &(part(name, (0, 0), 2) + &part("cut.asc", (2, 0), 2)));
+        refused_of(map, &[("small.vrt", &small), (name, bytes), cut], &["cut.asc", "3 heights for"]);
+        let voids = "<NoDataValue>0</NoDataValue>".to_owned() + &part(name, (0, 0), 8_192);
+        let voids = mosaic((8_192, 8_192), &voids);
+        refused_of(map, &[("voids.vrt", &voids), (name, bytes)], &["all its samples are void"]);
+    }
     refused(
         map,
         "nodes.vrt",
@@ -285,6 +302,18 @@ pub(super) fn black_png(side: u32) -> Vec<u8> {
     stream.finish().unwrap();
     writer.finish().unwrap();
     bytes
+}
+
+/// A packed TIFF of zeros.
+fn black_tiff(side: u32) -> Vec<u8> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let encoder = tiff::encoder::TiffEncoder::new(&mut file).unwrap();
+    let packing = tiff::encoder::Compression::Deflate(tiff::encoder::DeflateLevel::Fast);
+    let mut encoder = encoder.with_compression(packing);
+    let mut picture = encoder.new_image::<tiff::encoder::colortype::Gray8>(side, side).unwrap();
+    picture.rows_per_strip(64).unwrap();
+    picture.write_data(&vec![0; side as usize * side as usize]).unwrap();
+    file.into_inner()
 }
 
 /// As [`black_png`], without its end.

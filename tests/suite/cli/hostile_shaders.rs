@@ -1,4 +1,4 @@
-//! Costs of a refusal of a shader folder, which the compilers never see.
+//! Costs of a refusal of a shader folder that the compilers never see, and folders at which they come to their end.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -56,6 +56,29 @@ fn includes_without_an_end() {
     let three = "#version 450\n#include \"a.glsl\"\n#include \"b.glsl\"\n#include \"c.glsl\"\n";
     let parts = ["s/a.glsl", "s/b.glsl", "s/c.glsl"].map(|name| (name, long.as_bytes()));
     refused(&[&[("s/zz.comp", three.as_bytes())][..], &parts].concat(), &["c.glsl:", "524288 bytes"]);
+}
+
+/// Each is short, and asks glslang for more memory, time or stack than there is.
+#[test]
+fn a_text_that_ends_a_compiler_ends_its_own_process() {
+    let doubled = |first: &str, next: fn(usize) -> String| {
+        format!("{first}\n{}", (1..40).map(|i| next(i) + "\n").collect::<String>())
+    };
+    let macros = doubled("#define A0 a+=1;", |i| format!("#define A{i} A{0} A{0}", i - 1));
+    let structures = doubled("struct S0 { float a, b; };", |i| format!("struct S{i} {{ S{} a, b; }};", i - 1));
+    let chain = "+a".repeat(120_000);
+    for (declarations, statements) in [
+        (&macros[..], "int a = 1; A39"),
+        (&structures, "S39 s; S39 t; t = s; if (s == t) { t = s; }"),
+        ("", &format!("int a = 1; int b = a{chain};")),
+    ] {
+        let out = folder();
+        let shaders = own_shaders(out.path());
+        let text = format!("#version 450\n{declarations}\nvoid main() {{ {statements} }}\n");
+        fs::write(shaders.join("caustics/zz.comp"), text).unwrap();
+        let program = caustics("render --quiet --device none --shader-dir").arg(&shaders);
+        program.run().refused(2, &["caustics/zz.comp brought a compiler to its end", "make it simpler"]);
+    }
 }
 
 /// Else the edits in it would be ignored in silence.

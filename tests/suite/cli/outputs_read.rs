@@ -89,6 +89,23 @@ fn files_behind_other_files_are_kept() {
     }
 }
 
+/// Of names that begin as an experiment's own do, what it may write, and what it never writes.
+#[test]
+fn what_is_named_as_an_experiments_own_is_kept() {
+    let out = folder();
+    for name in ["terrain-screen.png", "terrain-screen-a.png"] {
+        file(&out, name, "picture");
+        refused(terrain("experiment screen --out . --drape").arg(name), out.path(), name);
+    }
+    for name in ["terrain-screen.asc", "terrain-screen-a.asc"] {
+        file(&out, name, "grid");
+        let experiment = terrain("experiment screen --quiet --out . --map").arg(name).on_test_device();
+        let ended = experiment.inside(out.path()).run();
+        assert!(!ended.stderr.contains(REPLACED), "{}", ended.stderr);
+        ended.refused(2, &[name]);
+    }
+}
+
 #[test]
 fn what_a_page_shows_is_kept() {
     let out = folder();

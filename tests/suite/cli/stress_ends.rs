@@ -1,6 +1,8 @@
 //! Ends of a series of `stress` by itself on a real device: loops that the driver cut, a lost device; and several devices in
 //! one call.
 
+use std::fs::File;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use super::program::{Program, caustics, device, entries, file, folder, gas, lava, read_json, terrain};
@@ -50,6 +52,20 @@ fn a_lost_device_ends_its_series_and_the_record_says_so() {
     assert_eq!((kinds(&lost), steps(&lost).len()), (vec!["device"], 0));
     let reason = lost["series"][0]["stop"]["reason"].as_str().unwrap();
     assert!(reason.contains("device") && reason.contains("lost"), "{reason}");
+}
+
+/// It takes one record, and that of a step would be its end: said before the first step.
+#[test]
+fn a_pipe_is_no_place_for_what_is_written_after_every_step() {
+    let out = folder();
+    assert!(Command::new("mkfifo").arg(out.path().join("pipe")).status().unwrap().success());
+    // Open at both ends, so that neither waits.
+    let _held = File::options().read(true).write(true).open(out.path().join("pipe")).unwrap();
+    for anew in ["", "--anew"] {
+        let program = one_step().args("--json pipe").args(anew).on_test_device().inside(out.path());
+        program.run().refused(2, &["writing pipe: it is a pipe", "one record", "name a regular file", "--json -"]);
+    }
+    assert_eq!(entries(out.path()), ["pipe"]);
 }
 
 /// A mesh that no device of the least heap holds is refused before a mesh is divided, which would take gigabytes.

@@ -1,6 +1,6 @@
 //! `terrain` of maps in tiles through the binary: what the record says of them, and what has no room.
 
-use super::program::{ONCE, entries, folder, terrain};
+use super::program::{ONCE, caustics, entries, file, folder, terrain};
 use super::terrain::small;
 use crate::faults::Layer;
 
@@ -163,6 +163,30 @@ fn overviews_are_those_of_a_geotiff() {
     render("").refused(2, &["--overview 1", "only a GeoTIFF", "--map"]);
     render("--map maunga-whau").refused(2, &["--overview 1", "only a GeoTIFF", "maunga-whau"]);
     render(&format!("--map {jacksboro}")).refused(2, &["jacksboro.tif", "it has 0 overviews"]);
+}
+
+/// A file whose spacing no map may have is drawn with one that is given, and as a file of that.
+#[test]
+fn a_spacing_stands_in_for_that_of_the_file() {
+    let out = folder();
+    for (name, cell) in [("near.asc", "1e-9"), ("like.asc", "10")] {
+        let corner = "xllcorner 500000\nyllcorner 4000000\n";
+        file(&out, name, format!("ncols 3\nnrows 3\n{corner}cellsize {cell}\n1 2 3\n4 5 9\n7 8 9\n"));
+    }
+    let picture = |map: &str, options: &str| {
+        let render = format!("render --quiet --image {map}.png --map {map}.asc {options}");
+        small(&render).inside(out.path()).env("XDG_CACHE_HOME", out.path()).run()
+    };
+    let read = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+    for options in ["--variant gpu-compute", "--variant tiled-compute --stream"] {
+        picture("near", options).refused(2, &["near.asc: cellsize: it makes samples lie"]);
+        picture("near", &format!("{options} --spacing 10")).succeeded();
+        picture("like", options).succeeded();
+        assert!(read("near.png") == read("like.png"), "{options}");
+    }
+    let water = || caustics("render --quiet --image w.png --water-map near.asc").inside(out.path()).tiny();
+    water().run().refused(2, &["near.asc: cellsize: it makes samples lie"]);
+    water().args("--water-map-spacing 5").run().succeeded();
 }
 
 /// Variants and options that need the samples themselves are refused.

@@ -3,6 +3,7 @@
 mod calls;
 mod files;
 pub mod lent;
+mod limits;
 mod masks;
 mod rounds;
 

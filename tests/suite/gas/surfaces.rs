@@ -250,7 +250,8 @@ fn bands_shrink_until_their_lists_fit() {
                 Err(error) => break error,
             }
         };
-        assert!(matches!(error, Error::Limit { .. }) && error.to_string().contains("list-bytes"), "{error}");
+        let told = "and `list-bytes` allows 4096; raise `list-bytes` or lower `size`";
+        assert!(matches!(error, Error::Filling { .. }) && error.to_string().ends_with(told), "{error}");
     });
 }
 

@@ -266,6 +266,18 @@ fn stages_keep_to_the_limits_of_the_device() {
         let most = limits.max_vertex_output_components / 4;
         let what = "count of locations that a stage gives to another";
         beyond(draw(&vertex(0, most), &fragment(most, 1)), what, u64::from(most) + 1, most);
+        // All locations but one, and the block of built-ins, which has seven components.
+        let count = most - 1;
+        let many_out = format!(
+            "layout(location = 0) in vec2 place;\nlayout(location = 0) out vec4 colours[{count}];\nvoid main() {{\n\
+             for (int i = 0; i < {count}; i++) {{ colours[i] = vec4(1.0); }}\ngl_Position = vec4(place, 0.0, 1.0);\n}}\n"
+        );
+        let many_in = format!(
+            "layout(location = 0) in vec4 colours[{count}];\nlayout(location = 0) out vec4 target;\n\
+             layout(location = 1) out vec4 more;\nvoid main() {{ target = colours[0]; more = colours[{count} - 1]; }}\n"
+        );
+        let what = "count of components that a stage gives, built-ins among them,";
+        beyond(draw(&many_out, &many_in), what, u64::from(4 * count + 7), limits.max_vertex_output_components);
         let most = limits.max_fragment_output_attachments;
         let what = "count of locations of colours";
         beyond(draw(&vertex(0, 0), &fragment(0, most)), what, u64::from(most) + 1, most);

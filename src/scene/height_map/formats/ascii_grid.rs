@@ -12,7 +12,12 @@ use std::io::BufRead;
 const LONGEST_TOKEN: usize = 64;
 
 /// Reads an Esri ASCII grid: lines of a keyword and a number, then the heights, row by row from the north.
-pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) -> Result<HeightMap, Fault> {
+pub(super) fn parse(
+    size_bytes: u64,
+    input: impl BufRead,
+    unit: Option<Unit>,
+    has_own_spacing: bool,
+) -> Result<HeightMap, Fault> {
     let mut tokens = Tokens { input, line: 1, is_first: true };
     let mut header = Header::default();
     let first = loop {
@@ -33,7 +38,10 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
         }
     };
     let (width, height) = header.size(size_bytes)?;
-    let placement = header.placement(width, height, unit)?;
+    let placement = match header.coordinates(width, height) {
+        Some(coordinates) => coordinates.placed_or_spaced(unit, has_own_spacing)?,
+        None => Placement::Unknown,
+    };
     let count = width as usize * height as usize;
     let mut values = allocate::<f32>(count)?;
     let no_data = header.no_data;
@@ -122,14 +130,15 @@ impl Header {
         Ok((width, height))
     }
 
-    fn placement(&self, width: u32, height: u32, unit: Option<Unit>) -> Result<Placement, Fault> {
-        let Some(x) = self.step[0].or(self.step[1]) else { return Ok(Placement::Unknown) };
+    /// Spacing and place of the samples; none where the file gives no spacing.
+    fn coordinates(&self, width: u32, height: u32) -> Option<MapCoordinates> {
+        let x = self.step[0].or(self.step[1])?;
         let field = if self.step[1].is_some() { "dx, dy" } else { "cellsize" };
         let step = DVec2::new(x, self.step[1].unwrap_or(x));
         let west = self.west[1].or(self.west[0].map(|edge| edge + step.x / 2.0));
         let south = self.south[1].or(self.south[0].map(|edge| edge + step.y / 2.0));
         let north_west = west.zip(south).map(|(west, south)| DVec2::new(west, south + step.y * f64::from(height - 1)));
-        MapCoordinates { north_west, step, width, height, field }.placed(unit)
+        Some(MapCoordinates { north_west, step, width, height, field })
     }
 }
 
@@ -200,7 +209,7 @@ mod tests {
 
     fn read(text: &str) -> Result<HeightMap, Fault> {
         // A small buffer, so that tokens are cut by its end.
-        parse(text.len() as u64, std::io::BufReader::with_capacity(5, text.as_bytes()), None)
+        parse(text.len() as u64, std::io::BufReader::with_capacity(5, text.as_bytes()), None, false)
     }
 
     #[test]

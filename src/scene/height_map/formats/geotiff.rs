@@ -7,7 +7,7 @@ use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
-use crate::scene::height_map::shown;
+use crate::scene::height_map::{MapOptions, shown};
 use glam::DVec2;
 use std::io::{Read, Seek};
 use tiff::ColorType;
@@ -41,7 +41,8 @@ pub(super) struct Picture<R: Read + Seek> {
 
 impl<R: Read + Seek> Picture<R> {
     /// The first picture, or the overview of a number from 1 on, which has its tags.
-    pub(super) fn open(size_bytes: u64, input: R, overview: u32) -> Result<Self, Fault> {
+    pub(super) fn open(size_bytes: u64, input: R, options: impl Into<MapOptions>) -> Result<Self, Fault> {
+        let MapOptions { overview, has_own_spacing } = options.into();
         let mut limits = Limits::default();
         limits.decoding_buffer_size = MAX_BYTES;
         limits.intermediate_buffer_size = MAX_BYTES;
@@ -60,10 +61,32 @@ impl<R: Read + Seek> Picture<R> {
         }
         let ((width, height), bits) = check_shape(&mut decoder, size_bytes)?;
         let placement = match coordinates {
-            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed(unit)?,
+            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed_or_spaced(unit, has_own_spacing)?,
             None => Placement::Unknown,
         };
         Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes })
+    }
+
+    /// Bytes of all samples, unpacked.
+    ///
+    /// # Errors
+    /// Samples that are not read, for their kind or because there are too many.
+    pub(super) fn raw_bytes(&self) -> Result<u64, Fault> {
+        let Picture { bits, width, height, .. } = *self;
+        if !matches!(bits, 8 | 16 | 32 | 64) {
+            return Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")));
+        }
+        let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits / 8);
+        if raw_bytes > MAX_BYTES as u64 {
+            let reason = format!(
+                "its samples take {} MiB, and {} are read at most; write fewer with gdal_translate -outsize 50% 50%, or parts \
+                 and a mosaic of them with gdalbuildvrt",
+                raw_bytes >> 20,
+                MAX_BYTES >> 20
+            );
+            return Err(fault("ImageWidth, ImageLength, BitsPerSample", reason));
+        }
+        Ok(raw_bytes)
     }
 }
 
@@ -97,26 +120,16 @@ fn find_overview(decoder: &mut Decoder<impl Read + Seek>, overview: u32) -> Resu
 }
 
 /// Reads the first picture, or an overview, in strips or tiles.
-pub(super) fn parse(size_bytes: u64, input: impl Read + Seek, overview: u32) -> Result<HeightMap, Fault> {
-    let mut picture = Picture::open(size_bytes, input, overview)?;
-    let Picture { bits, width, height, .. } = picture;
-    if !matches!(bits, 8 | 16 | 32 | 64) {
-        return Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")));
+pub(super) fn parse(
+    size_bytes: u64,
+    input: impl Read + Seek,
+    options: impl Into<MapOptions>,
+) -> Result<HeightMap, Fault> {
+    let mut picture = Picture::open(size_bytes, input, options)?;
+    if picture.raw_bytes()? > spare_bytes(size_bytes) {
+        check_samples(&mut picture, &[])?;
     }
-    let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
-    if raw_bytes > MAX_BYTES as u64 {
-        let reason = format!(
-            "its samples take {} MiB, and {} are read at most; write fewer with gdal_translate -outsize 50% 50%, or parts and a \
-             mosaic of them with gdalbuildvrt",
-            raw_bytes >> 20,
-            MAX_BYTES >> 20
-        );
-        return Err(fault("ImageWidth, ImageLength, BitsPerSample", reason));
-    }
-    if raw_bytes > spare_bytes(size_bytes) {
-        check_samples(&mut picture)?;
-    }
-    let Picture { mut decoder, no_data, placement, .. } = picture;
+    let Picture { mut decoder, width, height, no_data, placement, .. } = picture;
     let source = Source { width, height, no_data, placement };
     match decoder.read_image().map_err(foreign)? {
         DecodingResult::U8(values) => source.map(values, true),

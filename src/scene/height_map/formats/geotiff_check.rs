@@ -3,12 +3,13 @@
 use super::geotiff::{Picture, fault, foreign};
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
-use crate::scene::height_map::grid::{all_void, is_height, is_void, no_height};
+use crate::scene::height_map::grid::{all_void, is_height, is_same, is_void, no_height};
 use std::io::{Read, Seek};
 use tiff::decoder::{ChunkType, DecodingResult};
 
-/// Decodes all strips or tiles, one by one, and looks for what makes them no map.
-pub(super) fn check_samples(picture: &mut Picture<impl Read + Seek>) -> Result<(), Fault> {
+/// Decodes all strips or tiles, one by one, and looks for what makes them no map. True where a sample is a height that is none of
+/// `voids`, which stand for none as well.
+pub(super) fn check_samples(picture: &mut Picture<impl Read + Seek>, voids: &[f64]) -> Result<bool, Fault> {
     let Picture { decoder, bits, width, no_data, size_bytes, .. } = picture;
     let (chunk_width, chunk_height) = decoder.chunk_dimensions();
     if chunk_width == 0 || chunk_height == 0 {
@@ -26,60 +27,78 @@ pub(super) fn check_samples(picture: &mut Picture<impl Read + Seek>) -> Result<(
         ChunkType::Strip => (decoder.strip_count(), 1),
         ChunkType::Tile => (decoder.tile_count(), width.div_ceil(chunk_width)),
     };
-    let mut has_height = false;
+    let mut seen = Seen::default();
     for chunk in 0..count.map_err(foreign)? {
         let columns = decoder.chunk_data_dimensions(chunk).0.max(1) as usize;
         let samples = decoder.read_chunk(chunk).map_err(foreign)?;
-        has_height |= look_at(&samples, *no_data).map_err(|(index, value)| {
+        look_at(&samples, *no_data, voids, &mut seen).map_err(|(index, value)| {
             let row = (chunk / across) as usize * chunk_height as usize + index / columns;
             let column = (chunk % across) as usize * chunk_width as usize + index % columns;
             no_height(row, column, value)
         })?;
     }
-    if has_height { Ok(()) } else { Err(all_void()) }
+    if seen.has_height { Ok(seen.has_known) } else { Err(all_void()) }
+}
+
+#[derive(Default)]
+struct Seen {
+    /// A sample of the file is a height.
+    has_height: bool,
+    /// One is a height to whoever asks, too.
+    has_known: bool,
 }
 
 /// A sample that is no height: its index and itself.
 type NoHeight = (usize, f64);
 
-/// True where samples have a height.
-fn look_at(samples: &DecodingResult, no_data: Option<f64>) -> Result<bool, NoHeight> {
+fn look_at(samples: &DecodingResult, no_data: Option<f64>, voids: &[f64], seen: &mut Seen) -> Result<(), NoHeight> {
+    let mut look = Look { no_data, voids, seen };
     match samples {
-        DecodingResult::U8(values) => any_height(values, no_data, f64::from),
-        DecodingResult::I8(values) => any_height(values, no_data, f64::from),
-        DecodingResult::U16(values) => any_height(values, no_data, f64::from),
-        DecodingResult::I16(values) => any_height(values, no_data, f64::from),
-        DecodingResult::U32(values) => any_height(values, no_data, f64::from),
-        DecodingResult::I32(values) => any_height(values, no_data, f64::from),
-        DecodingResult::U64(values) => any_height(values, no_data, |value| value as f64),
-        DecodingResult::I64(values) => any_height(values, no_data, |value| value as f64),
-        DecodingResult::F16(values) => any_height(values, no_data, f64::from),
-        DecodingResult::F32(values) => any_height(values, no_data, f64::from),
-        DecodingResult::F64(values) => any_height(values, no_data, f64::from),
+        DecodingResult::U8(values) => look.at(values, f64::from),
+        DecodingResult::I8(values) => look.at(values, f64::from),
+        DecodingResult::U16(values) => look.at(values, f64::from),
+        DecodingResult::I16(values) => look.at(values, f64::from),
+        DecodingResult::U32(values) => look.at(values, f64::from),
+        DecodingResult::I32(values) => look.at(values, f64::from),
+        DecodingResult::U64(values) => look.at(values, |value| value as f64),
+        DecodingResult::I64(values) => look.at(values, |value| value as f64),
+        DecodingResult::F16(values) => look.at(values, f64::from),
+        DecodingResult::F32(values) => look.at(values, f64::from),
+        DecodingResult::F64(values) => look.at(values, f64::from),
     }
 }
 
-fn any_height<T: Copy + PartialEq>(
-    values: &[T],
+struct Look<'a> {
     no_data: Option<f64>,
-    number: impl Fn(T) -> f64,
-) -> Result<bool, NoHeight> {
-    // What packs best is one number again and again, which is soon seen.
-    let is_one = values.split_first().is_some_and(|(_, rest)| *rest == values[..rest.len()]);
-    let looked_at = if is_one { 1 } else { values.len() };
-    let mut has_height = false;
-    for (index, value) in values.iter().take(looked_at).map(|&value| number(value)).enumerate() {
-        if is_height(value) {
-            has_height = has_height || !is_void(value, no_data);
-        } else if !is_void(value, no_data) {
-            return Err((index, value));
+    voids: &'a [f64],
+    seen: &'a mut Seen,
+}
+
+impl Look<'_> {
+    fn at<T: Copy + PartialEq>(&mut self, values: &[T], number: impl Fn(T) -> f64) -> Result<(), NoHeight> {
+        let Look { no_data, voids, seen } = self;
+        let no_data = *no_data;
+        // What packs best is one number again and again, which is soon seen.
+        let is_one = values.split_first().is_some_and(|(_, rest)| *rest == values[..rest.len()]);
+        let looked_at = if is_one { 1 } else { values.len() };
+        for (index, value) in values.iter().take(looked_at).map(|&value| number(value)).enumerate() {
+            if !is_height(value) {
+                if is_void(value, no_data) {
+                    continue;
+                }
+                return Err((index, value));
+            }
+            if !seen.has_known && !is_void(value, no_data) {
+                seen.has_height = true;
+                seen.has_known = !voids.iter().any(|void| is_same(value, *void));
+            }
         }
+        Ok(())
     }
-    Ok(has_height)
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::geotiff;
     use std::io::Cursor;
     use tiff::encoder::colortype::Gray32Float;
@@ -87,10 +106,10 @@ mod tests {
     use tiff::tags::Tag;
 
     /// Of more bytes than a file of its size may take.
-    const SIDE: u32 = 4_800;
+    pub(in super::super) const SIDE: u32 = 4_800;
 
     /// A packed file of zeros, but for the sample of an index; -9999 is no height.
-    fn packed(zero: f32, index: usize, sample: f32) -> Vec<u8> {
+    pub(in super::super) fn packed(zero: f32, index: usize, sample: f32) -> Vec<u8> {
         let mut values = vec![zero; (SIDE * SIDE) as usize];
         values[index] = sample;
         let mut file = Cursor::new(Vec::new());
@@ -115,12 +134,16 @@ mod tests {
             let bytes = packed(zero, index, sample);
             assert!(bytes.len() < 1 << 20, "{} bytes", bytes.len());
             let mut picture = geotiff::Picture::open(bytes.len() as u64, Cursor::new(&bytes[..]), 0).unwrap();
-            let fault = super::check_samples(&mut picture).unwrap_err();
+            let fault = super::check_samples(&mut picture, &[]).unwrap_err();
             assert!(fault.to_string().starts_with(expected), "{fault}");
             let whole = geotiff::parse(bytes.len() as u64, Cursor::new(&bytes[..]), 0);
             assert_eq!(whole.unwrap_err(), fault);
         }
         let bytes = packed(-9_999.0, last / 2, 5.0);
+        for (voids, is_known) in [(&[][..], true), (&[4.0, 5.0], false), (&[-9_999.0, 5.1], true)] {
+            let mut picture = geotiff::Picture::open(bytes.len() as u64, Cursor::new(&bytes[..]), 0).unwrap();
+            assert_eq!(super::check_samples(&mut picture, voids), Ok(is_known), "{voids:?}");
+        }
         let map = geotiff::parse(bytes.len() as u64, Cursor::new(&bytes[..]), 0).unwrap();
         assert_eq!((map.voids(), map.range_m()), (last as u64, (5.0, 5.0)));
     }

@@ -13,12 +13,12 @@ use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
 use crate::scene::height_map::grid::{Placement, fits_steps, is_height, is_void, no_height};
 use crate::scene::height_map::void_samples::{Suspect, Watch};
-use crate::scene::height_map::{HeightMap, Rows, Samples};
+use crate::scene::height_map::{HeightMap, MapOptions, Rows, Samples};
 
 /// A GeoTIFF whose samples are all heights.
 pub(in crate::scene::height_map) struct GeoTiffRows {
     path: PathBuf,
-    overview: u32,
+    options: MapOptions,
     size: (u32, u32),
     placement: Placement,
     /// The height of step 0, metres, where the heights are whole numbers that 16-bit steps hold.
@@ -29,8 +29,8 @@ pub(in crate::scene::height_map) struct GeoTiffRows {
 impl GeoTiffRows {
     /// Looks at all samples of a TIFF or of an overview of it; none of another file and of one with voids, or with a row of tiles or
     /// a strip beyond what is ever read at once.
-    pub(in crate::scene::height_map) fn survey(path: &Path, overview: u32) -> Result<Option<Self>, Error> {
-        let Some(mut picture) = open(path, overview)? else { return Ok(None) };
+    pub(in crate::scene::height_map) fn survey(path: &Path, options: MapOptions) -> Result<Option<Self>, Error> {
+        let Some(mut picture) = open(path, options)? else { return Ok(None) };
         let size = (picture.width, picture.height);
         let (_, chunk_rows) = picture.decoder.chunk_dimensions();
         let band_bytes = u64::from(size.0) * u64::from(chunk_rows.min(size.1)) * size_of::<f64>() as u64;
@@ -62,7 +62,7 @@ impl GeoTiffRows {
         })?;
         let lowest = (is_integral && fits_steps(low, high)).then_some(low);
         let suspect = watch.suspect();
-        let rows = GeoTiffRows { path: path.to_owned(), overview, size, placement, lowest, suspect };
+        let rows = GeoTiffRows { path: path.to_owned(), options, size, placement, lowest, suspect };
         Ok(is_void_free.then_some(rows))
     }
 
@@ -86,7 +86,7 @@ impl GeoTiffRows {
             let reason = format!("{} was changed while it was read; start again", self.path.display());
             Error::HeightMap { reason }
         };
-        let mut picture = open(&self.path, self.overview)?.ok_or_else(changed)?;
+        let mut picture = open(&self.path, self.options)?.ok_or_else(changed)?;
         if (picture.width, picture.height) != self.size {
             return Err(changed());
         }
@@ -111,9 +111,9 @@ impl GeoTiffRows {
     }
 }
 
-fn open(path: &Path, overview: u32) -> Result<Option<Picture<BufReader<File>>>, Error> {
+fn open(path: &Path, options: MapOptions) -> Result<Option<Picture<BufReader<File>>>, Error> {
     let Some((file, size_bytes)) = open_tiff(path)? else { return Ok(None) };
-    Picture::open(size_bytes, BufReader::new(file), overview).map(Some).map_err(|fault| malformed(path, fault))
+    Picture::open(size_bytes, BufReader::new(file), options).map(Some).map_err(|fault| malformed(path, fault))
 }
 
 /// Hands whole rows to `take`, as many as a tile or a strip has, while it says true; true where all are whole numbers by their kind.
@@ -252,9 +252,9 @@ mod tests {
         let heights = |w, h| (w, h, picture(w, h).map(|value| value as f32 - 0.25).collect());
         write::<Gray16>(&path, &[steps(45, 31), steps(23, 16), steps(12, 8)]);
         (0..3).for_each(|overview| assert_same(&path, overview));
-        let spacing = |overview| load(&path, overview).unwrap().spacing_m().to_array();
+        let spacing = |overview: u32| load(&path, overview).unwrap().spacing_m().to_array();
         assert_eq!((spacing(0), spacing(1)), ([1.0, 1.0], [45.0 / 23.0, 31.0 / 16.0]));
-        let corner = |overview| {
+        let corner = |overview: u32| {
             let map = load(&path, overview).unwrap();
             map.coordinates().unwrap().corners(map.width(), map.height())[0].to_array()
         };

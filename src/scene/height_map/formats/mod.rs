@@ -3,6 +3,7 @@
 
 mod ascii_grid;
 mod esri;
+mod first_look;
 mod geotiff;
 mod geotiff_check;
 mod geotiff_rows;
@@ -14,7 +15,7 @@ mod stored;
 pub(in crate::scene) mod vrt;
 
 pub(super) use self::geotiff_rows::GeoTiffRows;
-use super::HeightMap;
+use super::{HeightMap, MapOptions};
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::{Error, file};
 use std::fs::File;
@@ -22,6 +23,8 @@ use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 const KNOWN_ENDINGS: &str = ".hgt, .hdr, .bil, .bsq, .dem, .asc, .tif, .tiff, .png, .vrt";
+/// Endings whose files are told apart by nothing else.
+const BY_ENDING: [&str; 7] = ["hdr", "bil", "bsq", "dem", "vrt", "hgt", "asc"];
 /// Of UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -31,20 +34,22 @@ const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// Reads the height map at `path`: a folder of SRTM tiles, or a file by its ending, in either case, or by its content if that is
 /// a TIFF or a PNG.
 ///
-/// `overview` is 0, or the number of an overview of a TIFF.
-pub(super) fn load(path: &Path, overview: u32) -> Result<HeightMap, Error> {
+/// An overview is one of a TIFF.
+pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<HeightMap, Error> {
+    let options = options.into();
+    let MapOptions { overview, has_own_spacing } = options;
     if overview > 0 {
-        return tiff_overview(path, overview);
+        return tiff_overview(path, options);
     }
     if path.is_dir() {
         return hgt_folder::load(path);
     }
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let ending = ending(path);
     if matches!(ending.as_str(), "hdr" | "bil" | "bsq" | "dem") {
-        return esri::load(path);
+        return esri::load(path, has_own_spacing);
     }
     if ending == "vrt" {
-        return vrt::load(path);
+        return vrt::load(path, has_own_spacing);
     }
     let (mut file, size_bytes) = file::open(path, Asset::HeightMap)?;
     let parsed = match ending.as_str() {
@@ -54,14 +59,14 @@ pub(super) fn load(path: &Path, overview: u32) -> Result<HeightMap, Error> {
         }
         "asc" => {
             let projection = placement::beside(path)?;
-            ascii_grid::parse(size_bytes, BufReader::new(file), projection)
+            ascii_grid::parse(size_bytes, BufReader::new(file), projection, has_own_spacing)
         }
         _ => {
             let magic = magic(&mut file, path)?;
             if magic == PNG_MAGIC {
                 png::parse(size_bytes, BufReader::new(file))
             } else if is_tiff(&magic) {
-                geotiff::parse(size_bytes, BufReader::new(file), 0)
+                geotiff::parse(size_bytes, BufReader::new(file), options)
             } else if matches!(ending.as_str(), "tif" | "tiff" | "png") {
                 Err(Fault::new(Place::Byte(0), "its content is neither TIFF nor PNG; it is damaged or something else"))
             } else {
@@ -73,13 +78,19 @@ pub(super) fn load(path: &Path, overview: u32) -> Result<HeightMap, Error> {
     parsed.map_err(|fault| malformed(path, fault))
 }
 
+/// In small letters.
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
 /// An overview of a TIFF, from 1 on.
-fn tiff_overview(path: &Path, overview: u32) -> Result<HeightMap, Error> {
+fn tiff_overview(path: &Path, options: MapOptions) -> Result<HeightMap, Error> {
     let Some((file, size_bytes)) = open_tiff(path)? else {
+        let overview = options.overview;
         let reason = format!("`overview` {overview}: only a GeoTIFF has any, and {} is none", path.display());
         return Err(Error::HeightMap { reason });
     };
-    geotiff::parse(size_bytes, BufReader::new(file), overview).map_err(|fault| malformed(path, fault))
+    geotiff::parse(size_bytes, BufReader::new(file), options).map_err(|fault| malformed(path, fault))
 }
 
 /// The file and its size, if it is a TIFF by its content.
@@ -105,7 +116,7 @@ fn magic(file: &mut File, path: &Path) -> Result<Vec<u8>, Error> {
 /// The volcano that the program carries.
 pub(super) fn maunga_whau() -> Result<HeightMap, Error> {
     let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/maps/maunga-whau.asc"));
-    ascii_grid::parse(bytes.len() as u64, bytes.as_slice(), None)
+    ascii_grid::parse(bytes.len() as u64, bytes.as_slice(), None, false)
         .map_err(|fault| malformed(Path::new("maunga-whau.asc"), fault))
 }
 

@@ -72,6 +72,17 @@ impl MapCoordinates {
         };
         placement.check(self.height, self.field).map(|()| placement)
     }
+
+    /// As [`Self::placed`]; where samples have a spacing of the user's, steps that no map may have tell nothing.
+    ///
+    /// # Errors
+    /// As [`Self::placed`], of a map without a spacing of the user's.
+    pub(super) fn placed_or_spaced(&self, unit: Option<Unit>, has_own_spacing: bool) -> Result<Placement, Fault> {
+        match self.placed(unit) {
+            Err(_) if has_own_spacing => Ok(Placement::Unknown),
+            placed => placed,
+        }
+    }
 }
 
 /// The unit that the `.prj` file beside a raster names, if there is one.

@@ -2,7 +2,7 @@ use super::check_compressed;
 use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
-use crate::scene::height_map::grid::{Grid, Placement, all_void};
+use crate::scene::height_map::grid::{Grid, Placement, all_void, is_same};
 use crate::scene::height_map::map::check_size;
 use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::io::{BufRead, Seek};
@@ -17,15 +17,7 @@ pub(super) fn parse(size_bytes: u64, mut input: impl BufRead + Seek) -> Result<H
     let raw_bytes = reader.output_buffer_size().unwrap_or(0);
     // Nothing is kept of a file that could be far larger than it is before all of it is seen to be whole.
     if raw_bytes as u64 > spare_bytes(size_bytes) {
-        let mut has_height = color == ColorType::Grayscale;
-        let (pixel_bytes, alpha_at) = if depth == BitDepth::Sixteen { (4, 2) } else { (2, 1) };
-        while let Some(row) = reader.next_interlaced_row().map_err(foreign)? {
-            let is_seen = |pixel: &[u8]| pixel[alpha_at..].iter().any(|byte| *byte != 0);
-            has_height = has_height || row.data().chunks_exact(pixel_bytes).any(is_seen);
-        }
-        if !has_height {
-            return Err(all_void());
-        }
+        check_samples(&mut reader, &[])?;
         drop(reader);
         reader = open(size_bytes, &mut input)?.1;
     }
@@ -42,6 +34,48 @@ pub(super) fn parse(size_bytes: u64, mut input: impl BufRead + Seek) -> Result<H
     const VOID: i32 = -1;
     let masked = |pixel: &[u16]| if pixel[1] == 0 { VOID } else { pixel[0].into() };
     map(width, height, samples.chunks_exact(2).map(masked).collect(), Some(VOID.into()))
+}
+
+/// Columns and rows, and the bytes of all samples, unpacked.
+pub(super) fn size(size_bytes: u64, input: impl BufRead + Seek) -> Result<((u32, u32), u64), Fault> {
+    let (size, reader) = open(size_bytes, input)?;
+    Ok((size, reader.output_buffer_size().unwrap_or(0) as u64))
+}
+
+/// Columns and rows, and true where a sample is a height that is none of `voids`. All samples are looked at, and none is kept.
+pub(super) fn look_through(
+    size_bytes: u64,
+    input: impl BufRead + Seek,
+    voids: &[f64],
+) -> Result<((u32, u32), bool), Fault> {
+    let (size, mut reader) = open(size_bytes, input)?;
+    check_samples(&mut reader, voids).map(|has_known| (size, has_known))
+}
+
+/// Decodes all rows, one by one; true where a sample is a height that is none of `voids`, which stand for none as well.
+fn check_samples(reader: &mut Reader<impl BufRead + Seek>, voids: &[f64]) -> Result<bool, Fault> {
+    let (color, depth) = reader.output_color_type();
+    let (value_bytes, has_alpha) = (if depth == BitDepth::Sixteen { 2 } else { 1 }, color != ColorType::Grayscale);
+    let pixel_bytes = if has_alpha { 2 * value_bytes } else { value_bytes };
+    let (mut has_height, mut has_known) = (!has_alpha, !has_alpha && voids.is_empty());
+    while let Some(row) = reader.next_interlaced_row().map_err(foreign)? {
+        if has_known {
+            continue;
+        }
+        for pixel in row.data().chunks_exact(pixel_bytes) {
+            let (value, alpha) = pixel.split_at(value_bytes);
+            if has_alpha && alpha.iter().all(|byte| *byte == 0) {
+                continue;
+            }
+            has_height = true;
+            let value = value.iter().fold(0_u16, |value, byte| value << 8 | u16::from(*byte));
+            if !voids.iter().any(|void| is_same(value.into(), *void)) {
+                has_known = true;
+                break;
+            }
+        }
+    }
+    if has_height { Ok(has_known) } else { Err(all_void()) }
 }
 
 /// The size of a grey PNG of 8 or 16 bits, and what reads its rows.

@@ -344,7 +344,7 @@ fn a_geotiff_of_too_many_samples_is_refused_with_the_way_out() {
 fn parse(ending: &str, bytes: Vec<u8>) -> Result<HeightMap, Fault> {
     let size_bytes = bytes.len() as u64;
     match ending {
-        "asc" => ascii_grid::parse(size_bytes, bytes.as_slice(), None),
+        "asc" => ascii_grid::parse(size_bytes, bytes.as_slice(), None, false),
         "tif" => geotiff::parse(size_bytes, Cursor::new(bytes), 0),
         "png" => png::parse(size_bytes, Cursor::new(bytes)),
         // The size is as it should be, and the file ends early.

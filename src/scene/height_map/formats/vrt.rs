@@ -1,15 +1,16 @@
 //! Mosaics of GDAL: a virtual raster in XML whose parts are other files, sample by sample. Nothing is resampled or scaled.
 
-use super::{load as load_file, malformed};
+use super::{first_look, load as load_file, malformed};
 use crate::file as any_file;
 use crate::scene::binary::{allocate, spare_bytes};
 use crate::scene::error::{Asset, Fault, Place};
-use crate::scene::height_map::grid::{Grid, Placement};
+use crate::scene::height_map::grid::{Grid, Placement, all_void, is_same};
 use crate::scene::height_map::map::check_size;
-use crate::scene::height_map::{self, Coordinates, Geographic};
+use crate::scene::height_map::{self, Coordinates, Geographic, MapOptions};
 use crate::scene::{Error, HeightMap, Samples, file};
 use glam::DVec2;
 use roxmltree::{Document, Node};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -49,10 +50,10 @@ struct Part {
 }
 
 /// Reads a mosaic with all its parts.
-pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
+pub(super) fn load(path: &Path, has_own_spacing: bool) -> Result<HeightMap, Error> {
     let text = any_file::read_text(path, MOST_BYTES).map_err(|source| file::failed(path, Asset::HeightMap, source))?;
     let mosaic = Mosaic::parse(&text).map_err(|fault| malformed(path, fault))?;
-    mosaic.assemble(path, &text)
+    mosaic.assemble(path, &text, MapOptions { overview: 0, has_own_spacing })
 }
 
 /// The files of a mosaic's parts that are there.
@@ -109,9 +110,10 @@ impl Mosaic {
         Ok(Mosaic { size, no_data, step, parts })
     }
 
-    /// The file of each part, in their order, and the bytes of all files.
-    fn files(&self, path: &Path, text: &str) -> Result<(Vec<PathBuf>, u64), Error> {
+    /// The file of each part, in their order, and what is known of all of them.
+    fn files(&self, path: &Path, text: &str, options: MapOptions) -> Result<Files, Error> {
         let mut sizes = BTreeMap::new();
+        let mut most_bytes = 0;
         let mut files: Vec<PathBuf> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
             let refused = |reason: String| part.refused(path, text, reason);
@@ -119,7 +121,10 @@ impl Mosaic {
             if file.is_dir() || file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt")) {
                 return Err(refused(format!("{}: a mosaic's parts are files of heights", part.name)));
             }
-            sizes.insert(file.clone(), file::open(&file, Asset::HeightMap)?.1);
+            if let Entry::Vacant(size) = sizes.entry(file.clone()) {
+                size.insert(file::open(&file, Asset::HeightMap)?.1);
+                most_bytes = most_bytes.max(first_look::most_bytes(&file, options)?);
+            }
             files.push(file);
         }
         let times = 1 + files.windows(2).filter(|pair| pair[0] != pair[1]).count();
@@ -130,20 +135,44 @@ impl Mosaic {
             );
             return Err(malformed(path, Fault::new(Place::Whole, reason)));
         }
-        Ok((files, sizes.values().fold(0, |sum: u64, bytes| sum.saturating_add(*bytes))))
+        let size_bytes = sizes.values().fold(0, |sum: u64, bytes| sum.saturating_add(*bytes));
+        Ok(Files { files, size_bytes, most_bytes })
     }
 
-    fn assemble(&self, path: &Path, text: &str) -> Result<HeightMap, Error> {
+    /// Looks at all parts, and keeps nothing of those that are packed.
+    ///
+    /// # Errors
+    /// Those of reading them one after another; [`Error::Malformed`] where none of them has a height.
+    fn check(&self, path: &Path, text: &str, files: &[PathBuf], read: &mut LastRead) -> Result<(), Error> {
+        let (mut agreed, mut packed, mut has_height) = (Agreed::default(), BTreeMap::new(), false);
+        for (part, file) in self.parts.iter().zip(files) {
+            let voids: Vec<f64> = [self.no_data, part.no_data].into_iter().flatten().collect();
+            let looked = match packed.entry(file) {
+                Entry::Occupied(known) => known.into_mut(),
+                // By the voids of the first part of it.
+                Entry::Vacant(unknown) => unknown.insert(first_look::look_through(file, read.options, &voids)?),
+            };
+            let map = if let Some((map, has_known)) = looked {
+                has_height |= *has_known;
+                &*map
+            } else {
+                let (map, heights) = read.map(file)?;
+                has_height = has_height || heights.iter().any(|height| !is_void(*height, &voids));
+                map
+            };
+            agreed.check(self, part, map).map_err(|reason| part.refused(path, text, reason))?;
+        }
+        if has_height { Ok(()) } else { Err(malformed(path, all_void())) }
+    }
+
+    fn assemble(&self, path: &Path, text: &str, options: MapOptions) -> Result<HeightMap, Error> {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
-        let (files, file_bytes) = self.files(path, text)?;
-        let mut read = LastRead::default();
-        // Nothing is kept of a mosaic that could be far larger than its files before all of them are seen to be whole.
-        if (width * height * size_of::<f32>()) as u64 > spare_bytes(file_bytes) {
-            let mut agreed = Agreed::default();
-            for (part, file) in self.parts.iter().zip(&files) {
-                let checked = agreed.check(self, part, read.map(file)?.0);
-                checked.map_err(|reason| part.refused(path, text, reason))?;
-            }
+        let Files { files, size_bytes, most_bytes } = self.files(path, text, options)?;
+        let mut read = LastRead { options, last: None };
+        let own_bytes = (width * height * size_of::<f32>()) as u64;
+        // Nothing is kept of a mosaic that could take far more than its files before all of them are seen to be whole.
+        if own_bytes + most_bytes > spare_bytes(size_bytes) {
+            self.check(path, text, &files, &mut read)?;
         }
         let mut values = allocate::<f32>(width * height).map_err(|fault| malformed(path, fault))?;
         values.fill(f32::NAN);
@@ -152,17 +181,12 @@ impl Mosaic {
             let (map, heights) = read.map(file)?;
             agreed.check(self, part, map).map_err(|reason| part.refused(path, text, reason))?;
             let ((column, row), (columns, rows)) = (part.from, part.size);
-            let is_void = |height: f32| {
-                let is = |no_data: Option<f64>| {
-                    no_data.is_some_and(|no_data| f64::from(height) == no_data || height == no_data as f32)
-                };
-                height.is_nan() || is(self.no_data) || is(part.no_data)
-            };
+            let voids: Vec<f64> = [self.no_data, part.no_data].into_iter().flatten().collect();
             for line in 0..rows as usize {
                 let first = (row as usize + line) * map.width() as usize + column as usize;
                 let to = (part.to.1 as usize + line) * width + part.to.0 as usize;
                 let pairs = values[to..][..columns as usize].iter_mut().zip(&heights[first..][..columns as usize]);
-                pairs.filter(|(_, height)| !is_void(**height)).for_each(|(value, height)| *value = *height);
+                pairs.filter(|(_, height)| !is_void(**height, &voids)).for_each(|(value, height)| *value = *height);
             }
         }
         let placement = agreed.placement.unwrap_or(Placement::Unknown);
@@ -213,22 +237,39 @@ impl Agreed {
     }
 }
 
+/// True for a height that stands for none, by the file itself or by one of `voids`.
+fn is_void(height: f32, voids: &[f64]) -> bool {
+    height.is_nan() || voids.iter().any(|void| is_same(height.into(), *void))
+}
+
+/// The files of a mosaic's parts.
+struct Files {
+    /// Of each part.
+    files: Vec<PathBuf>,
+    /// Of all of them together, each counted once.
+    size_bytes: u64,
+    /// Most bytes that one of them takes while it is read, beyond what its size allows.
+    most_bytes: u64,
+}
+
 /// The map that was read last with its heights, no number where they are void: a file may have several parts.
-#[derive(Default)]
-struct LastRead(Option<(PathBuf, HeightMap, Vec<f32>)>);
+struct LastRead {
+    options: MapOptions,
+    last: Option<(PathBuf, HeightMap, Vec<f32>)>,
+}
 
 impl LastRead {
     fn map(&mut self, file: &Path) -> Result<(&HeightMap, &[f32]), Error> {
         // Another one goes before this one comes.
-        let (path, map, heights) = match self.0.take().filter(|(path, ..)| path == file) {
+        let (path, map, heights) = match self.last.take().filter(|(path, ..)| path == file) {
             Some(read) => read,
             None => {
-                let map = load_file(file, 0)?;
+                let map = load_file(file, self.options)?;
                 let heights = map.known_heights();
                 (file.to_owned(), map, heights)
             }
         };
-        let (_, map, heights) = self.0.insert((path, map, heights));
+        let (_, map, heights) = self.last.insert((path, map, heights));
         Ok((map, heights.as_slice()))
     }
 }
@@ -358,121 +399,4 @@ fn fault(node: Node<'_, '_>, reason: impl AsRef<str>) -> Fault {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-
-    /// A part of 3 x 2 samples of 10 m, as GDAL writes one.
-    fn part(name: &str, (column, row): (u32, u32), (from, size): ((u32, u32), (u32, u32))) -> String {
-        format!(
-            "<SimpleSource>\n<SourceFilename relativeToVRT=\"1\">{name}</SourceFilename>\n<SourceBand>1</SourceBand>\n\
-             <SrcRect xOff=\"{}\" yOff=\"{}\" xSize=\"{}\" ySize=\"{}\" />\n\
-             <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{}\" ySize=\"{}\" />\n</SimpleSource>\n",
-            from.0, from.1, size.0, size.1, size.0, size.1
-        )
-    }
-
-    fn mosaic((width, height): (u32, u32), parts: &str) -> String {
-        format!(
-            "<VRTDataset rasterXSize=\"{width}\" rasterYSize=\"{height}\">\n\
-             <GeoTransform> 1000.0, 10.0, 0.0, 2000.0, 0.0, -10.0</GeoTransform>\n\
-             <VRTRasterBand dataType=\"Int16\" band=\"1\">\n<NoDataValue>-9999</NoDataValue>\n{parts}</VRTRasterBand>\n</VRTDataset>\n"
-        )
-    }
-
-    /// West and east share a column; the middle's middle sample is void in one and known in the other.
-    fn folder() -> tempfile::TempDir {
-        let folder = tempfile::tempdir().unwrap();
-        let grid = |name: &str, x: u32, rows: &str| {
-            let head = format!("ncols 3\nnrows 2\nxllcorner {x}\nyllcorner 1980\ncellsize 10\nNODATA_value -9999\n");
-            fs::write(folder.path().join(name), head + rows).unwrap();
-        };
-        grid("west.asc", 1000, "1 2 -9999\n4 5 6\n");
-        grid("east.asc", 1020, "3 7 8\n-9999 -9999 9\n");
-        folder
-    }
-
-    fn load_text(folder: &Path, text: &str) -> Result<HeightMap, Error> {
-        let path = folder.join("all.vrt");
-        fs::write(&path, text).unwrap();
-        super::super::load(&path, 0)
-    }
-
-    #[test]
-    fn parts_lie_where_the_mosaic_says() {
-        let folder = folder();
-        let all = ((0, 0), (3, 2));
-        let parts = part("west.asc", (0, 0), all) + &part("east.asc", (2, 0), all);
-        let map = load_text(folder.path(), &mosaic((5, 2), &parts)).unwrap();
-        assert_eq!((map.width(), map.height(), map.voids()), (5, 2, 1));
-        let row = |row| (0..5).map(|column| map.height_m(column, row)).collect::<Vec<_>>();
-        assert_eq!(row(0), [1.0, 2.0, 3.0, 7.0, 8.0]);
-        assert_eq!([0, 1, 2, 4].map(|column| map.height_m(column, 1)), [4.0, 5.0, 6.0, 9.0]);
-        assert!(matches!(map.samples(), Samples::Steps { step_m: 1.0, .. }));
-        let place = map.coordinates().unwrap();
-        assert_eq!((place.north_west, place.step), (DVec2::new(1005.0, 1995.0), DVec2::splat(10.0)));
-        assert_eq!(map.spacing_m(), DVec2::splat(10.0));
-        // A rectangle of a part, and its place by the part that it comes from.
-        let parts = part("east.asc", (0, 0), ((1, 0), (2, 2)));
-        let map = load_text(folder.path(), &mosaic((2, 2), &parts)).unwrap();
-        assert_eq!((map.height_m(0, 0), map.height_m(1, 0), map.height_m(1, 1)), (7.0, 8.0, 9.0));
-        assert_eq!(map.coordinates().unwrap().north_west, DVec2::new(1035.0, 1995.0));
-        assert_eq!(
-            super::parts(&folder.path().join("all.vrt")),
-            [fs::canonicalize(folder.path().join("east.asc")).unwrap()]
-        );
-    }
-
-    #[test]
-    fn what_would_change_heights_or_lies_elsewhere_is_refused() {
-        let folder = folder();
-        let all = ((0, 0), (3, 2));
-        let (west, east) = (part("west.asc", (0, 0), all), part("east.asc", (2, 0), all));
-        let good = mosaic((5, 2), &(west.clone() + &east));
-        let with = |from: &str, to: &str| good.replacen(from, to, 1);
-        fs::write(folder.path().join("nested.vrt"), &good).unwrap();
-        let over = |side: u32| part("west.asc", (0, 0), ((0, 0), (side, side)));
-        for (text, expected) in [
-            ("<a>".to_owned(), "all.vrt: "),
-            ("<a/>".to_owned(), "line 1: a: it is no VRTDataset"),
-            (with("rasterXSize=\"5\"", "rasterXSize=\"0\""), "line 1: VRTDataset: it has 0 x 2 samples"),
-            (with("rasterXSize=\"5\"", "rasterXSize=\"x\""), "rasterXSize is \"x\""),
-            (with("rasterXSize=\"5\"", ""), "it has no rasterXSize"),
-            (with("rasterXSize=\"5\"", "rasterXSize=\"4\""), "DstRect: it leaves the raster"),
-            (mosaic((60_000, 60_000), &west), "its parts cover 6 of 60000 x 60000 samples"),
-            (with(" 10.0, 0.0, 2000", " 10.0, 1.0, 2000"), "line 2: GeoTransform: it is not north up"),
-            (with(" 10.0, 0.0, 2000", " 11.0, 0.0, 2000"), "not as far apart as its GeoTransform says"),
-            (with("-9999</NoDataValue>", "none</NoDataValue>"), "NoDataValue: it is \"none\", not a number"),
-            (with("<VRTRasterBand ", "<VRTRasterBand subClass=\"VRTDerivedRasterBand\" "), "its subClass is"),
-            (with("</VRTRasterBand>", "</VRTRasterBand><VRTRasterBand/>"), "it is a second band"),
-            (mosaic((5, 2), ""), "it has no SimpleSource"),
-            (with("relativeToVRT=\"1\"", "relativeToVRT=\"0\""), "line 6: SourceFilename: it is not relative"),
-            (with("<SourceBand>1", "<SourceBand>2"), "it is band \"2\""),
-            (with("<SourceBand>", "<ScaleRatio>2</ScaleRatio><SourceBand>"), "ScaleRatio: it changes heights"),
-            (good.replace("SimpleSource", "KernelFilteredSource"), "KernelFilteredSource: SimpleSource and"),
-            (mosaic((4_096, 4_096), &(0..80).map(|cut| over(4_096 - cut)).collect::<String>()), "leave out those"),
-            (mosaic((5, 2), &(west.clone() + &east).repeat(13)), "to and fro between its 2 files, 26 times"),
-            (with("west.asc", &"w".repeat(2_000)), "no name of a file"),
-            (
-                with("<DstRect xOff=\"0\" yOff=\"0\" xSize=\"3\"", "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"4\""),
-                "nothing is resampled",
-            ),
-            (with("<SrcRect xOff=\"0\"", "<SrcRect xOff=\"0.5\""), "xOff is 0.5; whole samples alone"),
-            (
-                with("<SrcRect xOff=\"0\"", "<SrcRect xOff=\"1\""),
-                "line 5: its SrcRect leaves west.asc, which has 3 x 2 samples",
-            ),
-            (with("west.asc", "north.asc"), "north.asc: "),
-            (with("west.asc", " "), "line 6: SourceFilename: it names no file"),
-            (with("west.asc", "../west.asc"), "../west.asc: it lies outside"),
-            (with("west.asc", "nested.vrt"), "nested.vrt: a mosaic's parts are files of heights"),
-            (
-                mosaic((6, 2), &(west.clone() + &part("east.asc", (3, 0), all))),
-                "east.asc does not lie where its DstRect says",
-            ),
-        ] {
-            let message = load_text(folder.path(), &text).unwrap_err().to_string();
-            assert!(message.contains(expected), "{expected}: {message}");
-        }
-    }
-}
+mod tests;

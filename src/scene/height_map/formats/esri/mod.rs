@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 const DATA_ENDINGS: [&str; 6] = ["bil", "dem", "bsq", "BIL", "DEM", "BSQ"];
 
 /// Reads an ESRI raster of one band, given its header (`.hdr`) or its samples (`.bil`, `.bsq`, `.dem`).
-pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
+pub(super) fn load(path: &Path, has_own_spacing: bool) -> Result<HeightMap, Error> {
     let is_header = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("hdr"));
     // The file that was named has to be there before the one beside it is looked for.
     file::open(path, Asset::HeightMap)?;
@@ -34,7 +34,8 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
     let (header_file, _) = file::open(&header_path, Asset::HeightMap)?;
     let header =
         Header::parse(&read_text(header_file, &header_path)?).map_err(|fault| malformed(&header_path, fault))?;
-    let placement = header.placement(placement::beside(path)?).map_err(|fault| malformed(&header_path, fault))?;
+    let unit = placement::beside(path)?;
+    let placement = header.placement(unit, has_own_spacing).map_err(|fault| malformed(&header_path, fault))?;
     let (data, size_bytes) = file::open(&data_path, Asset::HeightMap)?;
     parse(&header, placement, size_bytes, BufReader::new(data)).map_err(|fault| malformed(&data_path, fault))
 }
@@ -46,10 +47,11 @@ fn beside(path: &Path, endings: &[&str], missing: impl Fn(&str) -> String) -> Re
 
 impl Header {
     /// The spacing and the coordinates that it states.
-    fn placement(&self, unit: Option<Unit>) -> Result<Placement, Fault> {
+    fn placement(&self, unit: Option<Unit>, has_own_spacing: bool) -> Result<Placement, Fault> {
         let Header { columns: width, rows: height, north_west, .. } = *self;
         let Some(step) = self.step else { return Ok(Placement::Unknown) };
-        MapCoordinates { north_west, step, width, height, field: "XDIM, YDIM" }.placed(unit)
+        let coordinates = MapCoordinates { north_west, step, width, height, field: "XDIM, YDIM" };
+        coordinates.placed_or_spaced(unit, has_own_spacing)
     }
 }
 
@@ -111,7 +113,7 @@ pub(super) mod tests {
         let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
         let header = Header::parse(&String::from_utf8_lossy(&bytes[..end]))?;
         let samples = bytes.get(end + 1..).unwrap_or_default();
-        parse(&header, header.placement(None)?, samples.len() as u64, samples)
+        parse(&header, header.placement(None, false)?, samples.len() as u64, samples)
     }
 
     #[test]
@@ -121,7 +123,7 @@ pub(super) mod tests {
         let read = |dim: &str| {
             let header = format!("\u{feff}NCOLS 2\r\nNROWS 2\r\nXDIM {dim}\r\nYDIM 10\r\n");
             std::fs::write(folder.path().join("a.hdr"), header).unwrap();
-            load(&folder.path().join("a.bil"))
+            load(&folder.path().join("a.bil"), false)
         };
         // Some editors put a mark of UTF-8 before a text.
         assert_eq!(read("20").unwrap().spacing_m().to_array(), [20.0, 10.0]);
@@ -146,7 +148,7 @@ pub(super) mod tests {
         ] {
             let path = folder.path().join(name);
             std::fs::write(&path, "NCOLS 2\nNROWS 2\n").unwrap();
-            let message = load(&path).unwrap_err().to_string();
+            let message = load(&path, false).unwrap_err().to_string();
             assert!(message.ends_with(expected), "{message}");
         }
     }
