@@ -323,7 +323,9 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     // The window's own process reads nothing, and is to stay the only thread until it draws.
     if verb != "view" {
         pool::start()?;
-        if let Ok(folder) = matches.try_get_one::<PathBuf>("shader_dir") {
+        if let Ok(folder) = matches.try_get_one::<PathBuf>("shader_dir")
+            && !is_part(matches)
+        {
             shader_folder::check(folder.map(PathBuf::as_path))?;
         }
     }
@@ -331,6 +333,12 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let result = run_verb::<S>(verb, matches);
     loading::end();
     result
+}
+
+/// True of a process that one of ours has started for a part of its work.
+fn is_part(matches: &ArgMatches) -> bool {
+    let is_typed = |name: &str| matches.value_source(name) == Some(ValueSource::CommandLine);
+    ["process", "step_report"].into_iter().any(|name| matches.try_contains_id(name).is_ok() && is_typed(name))
 }
 
 /// The files that a bench of these arguments reads; none where they are refused.
@@ -424,7 +432,8 @@ const WRITTEN: [&str; 4] = ["json", "csv", "svg", "png"];
 fn own_file<S: Study>(context: &Context<'_, S>, read: &Path) -> Option<PathBuf> {
     let (begin, name) = (context.file(""), read.file_name()?);
     let rest = name.to_str()?.strip_prefix(begin.file_name()?.to_str()?)?;
-    let is_own = rest.starts_with(['-', '.']) && WRITTEN.contains(&rest.rsplit('.').next()?);
+    let ending = rest.rsplit('.').next()?;
+    let is_own = rest.starts_with(['-', '.']) && WRITTEN.iter().any(|written| written.eq_ignore_ascii_case(ending));
     let own = is_own.then(|| begin.with_file_name(name))?;
     (file::destination(&own) == file::destination(read)).then_some(own)
 }

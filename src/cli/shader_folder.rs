@@ -2,6 +2,7 @@
 //! of a compiler, and what ends a compiler would end the program.
 
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::OnceLock;
@@ -9,7 +10,6 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::failure::Failure;
-use super::outcome;
 use super::processes::finish_within;
 use super::watch::interrupted;
 use crate::gpu;
@@ -39,7 +39,10 @@ pub fn answer() -> Option<ExitCode> {
             gpu::warm_up_compilers();
             Limits::of_process()
         });
-        outcome::say(&format!("{BEGUN}{shader}"));
+        // Who started this may be gone: what is compiled then is for nobody.
+        if writeln!(io::stderr(), "{BEGUN}{}", shader.escape_debug()).is_err() {
+            std::process::exit(1);
+        }
         limits.set_for(text_bytes);
     });
     Some(ExitCode::from(if compiled.is_ok() { 0 } else { 2 }))
@@ -51,7 +54,9 @@ pub fn answer() -> Option<ExitCode> {
 /// [`Failure::Input`] with the shader at which a compiler came to its end.
 pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     let (Some(folder), Some(())) = (folder, ANSWERS.get()) else { return Ok(()) };
-    let failed = |e: std::io::Error| Failure::Running(format!("compiling shaders in a fresh process: {e}"));
+    let compiling = format!("compiling the shaders of {} in a fresh process", folder.display());
+    let failed =
+        |e: io::Error| Failure::Running(format!("{compiling}: {e}; let another process be started and try again"));
     let mut command = Command::new(std::env::current_exe().map_err(failed)?);
     command.args([OsString::from(VERB), folder.into()]).stdin(Stdio::null());
     let ended = finish_within(&mut command, interrupted(), Some(Instant::now() + PATIENCE)).map_err(failed)?;
@@ -61,7 +66,12 @@ pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     if interrupted().load(Ordering::Relaxed) {
         return Err(Error::Interrupted.into());
     }
-    let shader = ended.last_after(BEGUN).unwrap_or("its first shader");
+    let Some(shader) = ended.last_after(BEGUN).filter(|_| !ended.is_late) else {
+        let reason = if ended.is_late { format!("{} s were not enough", PATIENCE.as_secs()) } else { ended.message() };
+        return Err(Failure::Running(format!(
+            "{compiling}: {reason}; try again, or with fewer shaders that are changed"
+        )));
+    };
     Err(Failure::Input(format!(
         "shader {}: {shader} brought a compiler to its end ({}): its text asks for more memory ({} MiB and {TIMES_TEXT} times the \
          text), stack or processor time ({SECONDS} s) than one gets here; make it simpler",
@@ -71,12 +81,24 @@ pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     )))
 }
 
-/// Memory beside the program's own, the compilers' tables and that for the texts.
+/// Memory beside the program's own, the compilers' tables, the built-in binaries and that for the texts.
 const SPARE_BYTES: u64 = 64 << 20;
 /// Bytes of memory for each byte of the texts after their includes.
 const TIMES_TEXT: u64 = 16;
 /// Processor time of one shader, seconds.
 const SECONDS: u64 = 2;
+
+/// Stack that the program may have in use where it compiles.
+#[cfg(unix)]
+const USED_STACK_BYTES: u64 = 1 << 20;
+
+/// Sets a limit of this process by the one it has, no higher than it may be. One that cannot be set is not: the compilers are at
+/// their work all the same.
+#[cfg(unix)]
+fn limit(resource: nix::sys::resource::Resource, of: impl FnOnce(u64) -> u64) {
+    use nix::sys::resource::{getrlimit, setrlimit};
+    let _ = getrlimit(resource).and_then(|(soft, hard)| setrlimit(resource, of(soft).min(hard), hard));
+}
 
 /// Limits of this process, raised with each shader.
 struct Limits {
@@ -88,31 +110,36 @@ struct Limits {
 impl Limits {
     /// Those of a process whose compilers have their tables, which are larger than what a shader takes.
     fn of_process() -> Limits {
+        #[cfg(unix)]
+        {
+            use nix::sys::resource::Resource;
+            // Where it started this, the program compiles on a stack that is in use already.
+            limit(Resource::RLIMIT_STACK, |bytes| bytes - (bytes / 4).min(USED_STACK_BYTES));
+            // A compiler's end leaves no file.
+            limit(Resource::RLIMIT_CORE, |_| 0);
+        }
         // Linux alone has it.
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let data = status.lines().find_map(|line| line.strip_prefix("VmData:")?.trim().strip_suffix("kB"));
         let own_kib = data.and_then(|kib| kib.trim().parse::<u64>().ok());
-        Limits { bytes: own_kib.map(|kib| (kib << 10) + SPARE_BYTES) }
+        // Of unchanged shaders they are copied.
+        let built_in_bytes = gpu::built_in_shader_bytes();
+        Limits { bytes: own_kib.map(|kib| (kib << 10) + built_in_bytes + SPARE_BYTES) }
     }
 
-    /// Lets one more shader be compiled. What cannot be limited is not: the compilers are at their work all the same.
+    /// Lets one more shader be compiled.
     #[cfg(unix)]
     fn set_for(&mut self, text_bytes: usize) {
-        use nix::sys::resource::{Resource, UsageWho, getrlimit, getrusage, setrlimit};
-        let limit = |resource, limit: u64| {
-            let _ = getrlimit(resource).and_then(|(_, hard)| setrlimit(resource, limit.min(hard), hard));
-        };
+        use nix::sys::resource::{Resource, UsageWho, getrusage};
         if let Some(bytes) = &mut self.bytes {
             *bytes += TIMES_TEXT * text_bytes as u64;
-            limit(Resource::RLIMIT_DATA, *bytes);
+            limit(Resource::RLIMIT_DATA, |_| *bytes);
         }
         if let Ok(usage) = getrusage(UsageWho::RUSAGE_SELF) {
             let seconds = usage.user_time().tv_sec() + usage.system_time().tv_sec();
             // Each of the two is cut to whole seconds, and so is the limit.
-            limit(Resource::RLIMIT_CPU, seconds.unsigned_abs() + 2 + SECONDS);
+            limit(Resource::RLIMIT_CPU, |_| seconds.unsigned_abs() + 2 + SECONDS);
         }
-        // A compiler's end leaves no file.
-        limit(Resource::RLIMIT_CORE, 0);
     }
 
     #[cfg(not(unix))]

@@ -29,7 +29,7 @@ pub enum OutputError {
         /// Destination, which is a directory.
         path: PathBuf,
     },
-    #[error("cannot write {}: it is a pipe that no one reads; start its reader first, or name a file", .path.display())]
+    #[error("cannot write {}: it is a pipe that no one reads, or no longer; start its reader first, or name a file", .path.display())]
     Unread {
         /// Destination, a pipe.
         path: PathBuf,
@@ -418,7 +418,8 @@ mod tests {
         let reader = File::options().read(true).custom_flags(nix::libc::O_NONBLOCK).open(&path).unwrap();
         let written = write_with(&path, |stream| {
             drop(reader);
-            stream.write_all(b"all of it")
+            // More than it holds: a program that another test starts has the other end for a moment, too.
+            stream.write_all(&[7; 1 << 20])
         });
         let error = written.unwrap_err();
         assert!(matches!(error, OutputError::Unread { .. }), "{error}");

@@ -135,6 +135,6 @@ pub use pipeline::Topology;
 pub use recorder::Recorder;
 pub use render_pass::{Blend, DepthTest, Load};
 pub use sample::{Counts, FrameSample, Mode, PassSample, Span, Track};
-pub use shader::{Compiler, Replacements, ShaderLibrary, warm_up_compilers};
+pub use shader::{Compiler, Replacements, ShaderLibrary, built_in_shader_bytes, warm_up_compilers};
 pub use threads::{draw_in_place, for_another_process, pin_software_threads};
 pub use work::{Bytes, Kept, Work};

@@ -148,6 +148,12 @@ fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
     })
 }
 
+/// Bytes of the binaries that are built in.
+pub fn built_in_shader_bytes() -> u64 {
+    let words = |shader: &shader_build::EmbeddedShader| shader.glslang.len() + shader.naga.map_or(0, <[u32]>::len);
+    EMBEDDED.iter().map(|shader| 4 * words(shader) as u64).sum()
+}
+
 /// Shaders of a folder, compiled.
 pub struct Replacements {
     shaders: Vec<shader_build::CompiledShader>,

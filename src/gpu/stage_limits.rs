@@ -31,8 +31,11 @@ pub(super) fn stage(device: &Device, pass: &str, module: &ShaderModule) -> Resul
     };
     let (inputs, outputs) = (ends(&interface.inputs), ends(&interface.outputs));
     let components = |places: &[Location], built_ins: u64| {
-        let of_place = |place: &Location| u64::from(place.count) * u64::from(place.format.components);
-        places.iter().map(of_place).sum::<u64>().saturating_add(built_ins)
+        let end = |place: &Location| {
+            let last = u64::from(place.location) + u64::from(place.count.max(1)) - 1;
+            4 * last + u64::from(place.format.components)
+        };
+        places.iter().map(end).max().unwrap_or(0).saturating_add(built_ins)
     };
     let [taken_built_ins, given_built_ins] = interface.built_in_components;
     let (all_inputs, all_outputs) =
@@ -62,6 +65,9 @@ pub(super) fn stage(device: &Device, pass: &str, module: &ShaderModule) -> Resul
                 let problem = format!("its geometry shader {} emits no vertices", module.name);
                 return Err(Error::Pass { pass: pass.to_owned(), problem });
             }
+            let components = |place: &Location| u64::from(place.count) * u64::from(place.format.components);
+            // With its place: of the block of built-ins no more is written by any shader of ours.
+            let of_vertex = 4 + interface.outputs.iter().map(components).sum::<u64>();
             let invocations = u64::from(interface.invocations.unwrap_or(1));
             counts.extend(taken(limits.max_geometry_input_components));
             counts.extend(given(limits.max_geometry_output_components));
@@ -69,7 +75,7 @@ pub(super) fn stage(device: &Device, pass: &str, module: &ShaderModule) -> Resul
                 ("count of vertices of a geometry stage", vertices, limits.max_geometry_output_vertices),
                 (
                     "count of components of a geometry stage's vertices",
-                    vertices.saturating_mul(all_outputs),
+                    vertices * of_vertex,
                     limits.max_geometry_total_output_components,
                 ),
                 ("count of invocations of a geometry stage", invocations, limits.max_geometry_shader_invocations),

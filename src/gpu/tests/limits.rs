@@ -105,8 +105,7 @@ fn nothing_is_made_beyond_the_limits() {
             "(shader test/strip.geom): count of locations that a stage gives",
         ),
         (quads, |l| l.max_geometry_output_vertices = 3, "count of vertices of a geometry stage 4 is"),
-        // Four vertices of a colour and the seven components of the block of built-ins.
-        (quads, |l| l.max_geometry_total_output_components = 43, "components of a geometry stage's vertices 44 is"),
+        (quads, |l| l.max_geometry_total_output_components = 31, "components of a geometry stage's vertices 32 is"),
         (points, |l| l.max_vertex_output_components = 10, "built-ins among them, 11 is"),
         (quads, |l| l.max_geometry_shader_invocations = 0, "count of invocations of a geometry stage 1 is"),
         (

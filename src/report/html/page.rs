@@ -69,9 +69,15 @@ pub fn page(contents: &Contents) -> String {
     visible(&markup.into_string())
 }
 
-/// The text with its hidden characters as JSON writes them; tabs stay, by which listings are laid out.
+/// The text with its hidden characters as JSON writes them; tabs and ends of lines stay, by which listings are laid out.
 fn visible(text: &str) -> String {
-    text.split('\t').map(|part| escaped(part, false)).collect::<Vec<_>>().join("\t")
+    let mut shown = String::with_capacity(text.len());
+    for part in text.replace("\r\n", "\n").split_inclusive('\t') {
+        let (part, tab) = part.strip_suffix('\t').map_or((part, ""), |part| (part, "\t"));
+        shown.push_str(&escaped(part, false));
+        shown.push_str(tab);
+    }
+    shown
 }
 
 fn data(kind: &str, bytes: &[u8]) -> String {

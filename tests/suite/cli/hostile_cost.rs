@@ -212,6 +212,13 @@ fn mosaics_that_promise() {
         let voids = mosaic((8_192, 8_192), &voids);
         refused_of(map, &[("voids.vrt", &voids), (name, bytes)], &["all its samples are void"]);
     }
+    // A file of voids that many parts are cut from.
+    let header = &b"NROWS 2000\nNCOLS 2000\nNBITS 16\n"[..];
+    let cuts: String = (0..20_000).map(|i| part("zero.bil", (i % 7_200, i / 7_200), 1)).collect();
+    let voids = "<NoDataValue>0</NoDataValue>".to_owned() + &part("zero.bil", (0, 0), 2_000) + &cuts;
+    let voids = mosaic((7_200, 7_200), &voids);
+    let zeros = vec![0; 8_000_000];
+    refused_of(map, &[("cuts.vrt", &voids), ("zero.bil", &zeros), ("zero.hdr", header)], &["all its samples are void"]);
     refused(
         map,
         "nodes.vrt",

@@ -16,8 +16,11 @@ use crate::scene::Bounds;
 /// Length of a way through the air, over that of one on the surface which takes the heat as long.
 pub const THROUGH_AIR: f64 = 3.0;
 
-/// Part of a way's distance below which a shorter one is none: rounding ends no search.
-const CLOSER: f64 = 1.0 - 1e-9;
+/// Share of a way by which another one is to be shorter: rounding ends no search.
+const SHORTER: f64 = 1e-9;
+/// Times that a place is found nearer before that share doubles with every further one: around long, thin triangles distances may
+/// come down by less and less, millions of times.
+const TIMES: u32 = 8;
 
 /// Speed at which flames rise (`burning/flames.comp`), diagonals a second.
 const RISE_PER_S: f64 = 0.17;
@@ -133,6 +136,7 @@ pub fn distances(
         (None, _) => begun.next(),
         _ => open.pop().map(|Reverse(found)| found),
     };
+    let mut times = vec![0; positions.len() + air.count()];
     while let Some((bits, node)) = next(&mut open) {
         let mut reached: Vec<(usize, f64)> = Vec::new();
         let from = match node.checked_sub(positions.len()) {
@@ -155,19 +159,27 @@ pub fn distances(
         let (from, voxels) = from;
         for voxel in voxels {
             let distance = distances[from] + THROUGH_AIR * length(place(from), air.middle(voxel), lean);
-            if distance < CLOSER * in_air[voxel].0 {
+            if is_shorter(distance, in_air[voxel].0, &mut times[positions.len() + voxel]) {
                 in_air[voxel] = (distance, from);
                 open.push(Reverse((distance.to_bits(), positions.len() + voxel)));
             }
         }
         for (to, distance) in reached {
-            if distance < CLOSER * distances[to] {
+            if is_shorter(distance, distances[to], &mut times[to]) {
                 distances[to] = distance;
                 open.push(Reverse((distance.to_bits(), to)));
             }
         }
     }
     distances
+}
+
+/// True of a way that is worth going on from; counts it for the place.
+fn is_shorter(distance: f64, known: f64, times: &mut u32) -> bool {
+    let share = SHORTER * f64::from(times.saturating_sub(TIMES).min(60)).exp2();
+    let is = distance < (1.0 - share) * known;
+    *times += u32::from(is);
+    is
 }
 
 /// The distances on from a vertex to the corners of its triangles.
@@ -229,6 +241,19 @@ mod tests {
         let squares = (0..(side - 1) * (side - 1)).map(|i| i / (side - 1) * side + i % (side - 1));
         let triangles = squares.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]).collect();
         (positions, triangles)
+    }
+
+    #[test]
+    fn what_comes_down_by_less_and_less_ends() {
+        for by in [1e-6, 1e-8] {
+            let (mut known, mut times) = (1.0, 0);
+            while is_shorter((1.0 - by) * known, known, &mut times) {
+                known *= 1.0 - by;
+                assert!(times < 100, "{by}");
+            }
+            assert!(times > TIMES && !is_shorter(f64::INFINITY, known, &mut times));
+        }
+        assert!(is_shorter(1.0, f64::INFINITY, &mut 0));
     }
 
     #[test]

@@ -144,20 +144,25 @@ impl Mosaic {
     /// # Errors
     /// Those of reading them one after another; [`Error::Malformed`] where none of them has a height.
     fn check(&self, path: &Path, text: &str, files: &[PathBuf], read: &mut LastRead) -> Result<(), Error> {
-        let (mut agreed, mut packed, mut has_height) = (Agreed::default(), BTreeMap::new(), false);
+        let (mut agreed, mut seen, mut has_height) = (Agreed::default(), BTreeMap::new(), false);
         for (part, file) in self.parts.iter().zip(files) {
             let voids: Vec<f64> = [self.no_data, part.no_data].into_iter().flatten().collect();
-            let looked = match packed.entry(file) {
+            let is_first = !seen.contains_key(file);
+            let (looked, first_voids) = match seen.entry(file) {
                 Entry::Occupied(known) => known.into_mut(),
-                // By the voids of the first part of it.
-                Entry::Vacant(unknown) => unknown.insert(first_look::look_through(file, read.options, &voids)?),
+                Entry::Vacant(unknown) => {
+                    let looked = first_look::look_through(file, read.options, &voids)?;
+                    unknown.insert((looked, voids.clone()))
+                }
             };
+            // A file is looked through once, for its first part. By other voids it may have heights, as the whole map will tell.
+            has_height |= *first_voids != voids;
             let map = if let Some((map, has_known)) = looked {
                 has_height |= *has_known;
                 &*map
             } else {
                 let (map, heights) = read.map(file)?;
-                has_height = has_height || heights.iter().any(|height| !is_void(*height, &voids));
+                has_height = has_height || is_first && heights.iter().any(|height| !is_void(*height, &voids));
                 map
             };
             agreed.check(self, part, map).map_err(|reason| part.refused(path, text, reason))?;

@@ -138,6 +138,11 @@ fn what_is_packed_is_looked_through_before_any_of_it_is_kept() {
     let map = load_text(folder.path(), &voids).unwrap();
     assert_eq!((map.voids(), map.range_m()), (last as u64, (5.0, 5.0)));
     fs::write(&path, packed(0.0, last, 0.0)).unwrap();
+    // A part whose voids are others than those of the first of its file.
+    let other = all.replace("SimpleSource", "ComplexSource").replace("</Comp", "<NODATA>0</NODATA>\n</Comp");
+    let map = load_text(folder.path(), &mosaic((SIDE, SIDE), &(other + &part("packed.tif", (0, 0), ((0, 0), (2, 2))))));
+    let map = map.unwrap();
+    assert_eq!((map.voids(), map.range_m()), (last as u64 - 3, (0.0, 0.0)));
     fs::write(folder.path().join("cut.asc"), "ncols 2\nnrows 2\n1 2 3").unwrap();
     let behind = |name: &str| part("packed.tif", (0, 0), ((0, 0), (2, 2))) + &part(name, (2, 0), ((0, 0), (2, 2)));
     for (text, expected) in [
