@@ -17,6 +17,8 @@ use crate::measure::Error;
 
 /// First argument of that process. It is no verb of the user's.
 const VERB: &str = "compile-shaders";
+/// Exit code for a folder that is refused.
+const REFUSED: i32 = 2;
 /// Before a shader's name on its standard error, where the shader is begun.
 const BEGUN: &str = "compiling: ";
 /// Until all are compiled, whatever else the machine does; where processor time cannot be limited, the only limit.
@@ -45,13 +47,14 @@ pub fn answer() -> Option<ExitCode> {
         }
         limits.set_for(text_bytes);
     });
-    Some(ExitCode::from(if compiled.is_ok() { 0 } else { 2 }))
+    Some(ExitCode::from(compiled.map_or_else(|error| Failure::from(error).report(), |_| 0)))
 }
 
-/// Tries whether the compilers live through the shaders of a folder. What they refuse is for the caller, who compiles them again, to tell.
+/// Tries whether the compilers live through the shaders of a folder.
 ///
 /// # Errors
-/// [`Failure::Input`] with the shader at which a compiler came to its end.
+/// [`Failure::Input`] for a folder that is refused, and for a shader at which a compiler came to its end; [`Failure::Running`] where
+/// that cannot be found out.
 pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     let (Some(folder), Some(())) = (folder, ANSWERS.get()) else { return Ok(()) };
     let compiling = format!("compiling the shaders of {} in a fresh process", folder.display());
@@ -60,8 +63,11 @@ pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     let mut command = Command::new(std::env::current_exe().map_err(failed)?);
     command.args([OsString::from(VERB), folder.into()]).stdin(Stdio::null());
     let ended = finish_within(&mut command, interrupted(), Some(Instant::now() + PATIENCE)).map_err(failed)?;
-    if matches!(ended.status.code(), Some(0 | 2)) {
-        return Ok(());
+    match ended.status.code() {
+        Some(0) => return Ok(()),
+        // Told in the words that it would have here.
+        Some(REFUSED) => return Err(ended.failure(ended.message())),
+        _ => {}
     }
     if interrupted().load(Ordering::Relaxed) {
         return Err(Error::Interrupted.into());

@@ -67,6 +67,9 @@ fn files_behind_other_files_are_kept() {
     ] {
         file(&out, name, text);
     }
+    // Without a shader the folder itself is refused.
+    std::fs::create_dir(out.path().join("common")).unwrap();
+    file(&out, "common/fullscreen.vert", include_str!("../../../shaders/common/fullscreen.vert"));
     for (program, output) in [
         (terrain("bench --map b.hdr --csv b.bil"), "b.bil"),
         (terrain("bench --map all.vrt --json x.asc"), "x.asc"),
