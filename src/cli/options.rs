@@ -67,7 +67,8 @@ pub fn parse_fraction(text: &str) -> Result<f64, String> {
         None => (text, 1.0),
     };
     match number.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value * scale),
+        // A number of percent without its sign would be a hundred times as much, in silence.
+        Ok(value) if value.is_finite() && value >= 0.0 && (scale < 1.0 || value <= 1.0) => Ok(value * scale),
         _ => Err(format!("{text:?} is not a share: give 5% or 0.05")),
     }
 }

@@ -96,7 +96,11 @@ pub(super) struct Placement {
 
 impl Placement {
     pub fn new(transform: &Mat4) -> Self {
-        let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
+        let axes = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
+        let largest = axes.iter().map(|axis| axis.abs().max_element()).fold(0.0, f32::max);
+        // By a power of two, which changes no direction: products of lengths of 1e13 or 1e-13 are none that a float has.
+        let exponent = if largest.is_normal() { largest.log2().floor() as i32 } else { 0 };
+        let [x, y, z] = axes.map(|axis| axis * 2_f32.powi(-exponent.clamp(-126, 126)));
         let reflects = x.dot(y.cross(z)) < 0.0;
         // The cofactor matrix is the inverse transpose up to the determinant, and exists for
         // singular matrices too.
@@ -207,6 +211,17 @@ mod tests {
             let mesh = shapes::cuboid().transformed(&transform);
             mesh.validate().unwrap();
             assert!(winding_agrees(&mesh), "{scale}");
+        }
+    }
+
+    #[test]
+    fn normals_are_the_same_at_any_scale() {
+        let plain = shapes::cuboid().transformed(&Mat4::from_scale(Vec3::new(1.0, -1.0, 2.0))).normals;
+        for power in [-60, -100, 60, 100] {
+            let scale = 2_f32.powi(power);
+            let scaled = shapes::cuboid().transformed(&Mat4::from_scale(scale * Vec3::new(1.0, -1.0, 2.0)));
+            assert_eq!(scaled.normals, plain, "2^{power}");
+            assert!(scaled.indices != shapes::cuboid().indices, "turned over");
         }
     }
 

@@ -16,6 +16,8 @@ use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::{Error, file};
 
 const HEADER_BYTES: usize = 348;
+/// Offset of the first sample of a file with both, at least.
+const FIRST_SAMPLE: u64 = HEADER_BYTES as u64 + 4;
 
 /// Reads a file with its samples in it, or those beside its header, given either file.
 pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
@@ -124,9 +126,13 @@ fn header(input: &mut impl Read, is_one_file: bool) -> Result<Header, Fault> {
     if !(0.0..1e9).contains(&offset) {
         return Err(at(108, format!("vox_offset is {offset}, no offset of samples")));
     }
-    // From the start of the file, where the header has been read.
-    let behind =
-        if is_one_file { (offset as u64).max(HEADER_BYTES as u64) - HEADER_BYTES as u64 } else { offset as u64 };
+    // In a file of their own samples may begin anywhere. Behind a header they begin after its four bytes of extensions, which many
+    // writers call 0.
+    let offset = offset as u64;
+    if is_one_file && offset > 0 && offset < FIRST_SAMPLE {
+        return Err(at(108, format!("vox_offset is {offset}; samples begin at {FIRST_SAMPLE} or behind")));
+    }
+    let behind = if is_one_file { offset.max(FIRST_SAMPLE) - HEADER_BYTES as u64 } else { offset };
     let (slope, intercept) = (bytes.float(112), bytes.float(116));
     let is_scaled = slope != 0.0 && slope.is_finite() && intercept.is_finite();
     let scale = if is_scaled { Scale { slope, intercept } } else { Scale::PLAIN };

@@ -231,6 +231,8 @@ fn a_nifti_file_is_read_as_scanners_write_it() {
     let rows: Vec<(usize, &[u8])> = rows.iter().map(|(at, bytes)| (*at, bytes.as_slice())).collect();
     assert_eq!(load(&nifti(false, &rows), 0).unwrap().steps(), [4.0 * up, 2.0 * right, 3.0 * front]);
 
+    // Many write none, and mean where samples begin.
+    assert_eq!(load(&nifti(false, &[(108, &floats(&[0.0]))]), 0).unwrap(), plain);
     // A header and its samples apart, named by either.
     let mut header = nifti(false, &[(108, &floats(&[0.0]))]);
     let samples = header.split_off(352);
@@ -260,6 +262,7 @@ fn faults_of_nifti_files_name_byte_and_field() {
         ((70, short(128)), "byte 70: datatype is 128"),
         ((108, float(-8.0)), "byte 108: vox_offset is -8"),
         ((108, float(f32::NAN)), "byte 108: vox_offset is NaN"),
+        ((108, float(348.0)), "byte 108: vox_offset is 348; samples begin at 352"),
         ((108, float(400.0)), "of samples, but 3 x 2 x 2 of 4 bytes each make 48"),
         ((80, float(0.0)), "must span space"),
     ] {

@@ -85,6 +85,9 @@ fn a_regression_beyond_the_limit_ends_with_4() {
     // Neither a higher limit, nor none, nor the other direction is a regression.
     compare(&a, &slower).args("--fail-above 0.5").run().succeeded();
     assert!(compare(&a, &slower).run().succeeded().stdout.contains("SLOWER:"));
+    let ended = compare(&a, &slower).args("--fail-above 5").run();
+    assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("\"5\" is not a share: give 5% or 0.05"), "{}", ended.stderr);
     assert!(compare(&slower, &a).args("--fail-above 5%").run().succeeded().stdout.contains("FASTER:"));
 }
 
