@@ -94,10 +94,11 @@ float depth_at(RaySegment ray, float start) {
     return ray.near_m + fraction_at(ray, start) * (ray.far_m - ray.near_m);
 }
 
-Subsegment subsegment_of(RaySegment ray, float start, float size) {
+// The piece from `near` on, where the piece before it ended: a place's coordinates cost more than the rest of a step.
+Subsegment subsegment_of(RaySegment ray, vec3 near, float start, float size) {
     vec3 a = ray.from + fraction_at(ray, start) * ray.whole;
     vec3 b = ray.from + fraction_at(ray, start + size) * ray.whole;
-    float side = ray.cut > 0.0 ? (start < 0.5 ? -ray.whole.x : ray.whole.x) : a.x + b.x;
+    float side = ray.cut > 0.0 ? (start < 0.5 ? -ray.whole.x : ray.whole.x) : b.x;
     // The distance from the axis at its smallest.
     vec2 from = vec2(a.x, terrain.axis_distance_m + a.y);
     vec2 move = b.xy - a.xy;
@@ -113,7 +114,14 @@ Subsegment subsegment_of(RaySegment ray, float start, float size) {
         slack.z = 0.125 * length(b - a) * bend;
     }
     slack.z = slack.z / terrain.height_unit_m;
-    return Subsegment(map_coordinates(a, side), map_coordinates(b, side), depth_at(ray, start), slack);
+    return Subsegment(near, map_coordinates(b, side), depth_at(ray, start), slack);
+}
+
+// The near end of what begins at `start`, behind a piece: where that ended; at the cut, by longitudes of the other side.
+vec3 next_point(RaySegment ray, Subsegment before, float start) {
+    vec3 far = before.far;
+    bool is_cut = ray.cut > 0.0 && start == 0.5;
+    return is_cut ? vec3(2.0 * terrain.middle_node.x - far.x, far.yz) : far;
 }
 
 // The near end of a ray in the map's coordinates.

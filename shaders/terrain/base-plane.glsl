@@ -57,13 +57,17 @@ int first_units(RaySegment ray, int whole) {
     return whole;
 }
 
-Subsegment subsegment_of(RaySegment ray, float start, float size) {
-    vec3 near = ray.from + start * ray.whole;
+Subsegment subsegment_of(RaySegment ray, vec3 near, float start, float size) {
     return Subsegment(near, ray.from + (start + size) * ray.whole, ray.near_m + start * (ray.far_m - ray.near_m));
 }
 
 float depth_at(RaySegment ray, float start) {
     return ray.near_m + start * (ray.far_m - ray.near_m);
+}
+
+// The near end of what begins at `start`, behind a piece.
+vec3 next_point(RaySegment ray, Subsegment before, float start) {
+    return ray.from + start * ray.whole;
 }
 
 // The near end of a ray in the map's coordinates.

@@ -82,14 +82,19 @@ vec2 geodetic(float off, float along) {
 vec3 map_coordinates(vec3 point, float side) {
     float off = terrain.axis_distance_m + point.y;
     float radius = length(vec2(point.x, off));
-    float longitude = arc_tangent(point.x, off);
-    if (off < 0.0) {
-        longitude = side < 0.0 ? -abs(longitude) : abs(longitude);
-    }
-    float grown = off > 0.0 ? point.y + point.x * point.x / (radius + off) : radius - terrain.axis_distance_m;
-    vec2 found = vec2(point.z, grown);
-    if (!is_kind(terrain.base_kind, CYLINDER, radius)) {
-        found = geodetic(grown, point.z);
+    float longitude = 0.0;
+    vec2 found = vec2(0.0);
+    // A loop of one turn, which compilers that unroll take away: without it SwiftShader's needs minutes and more than 20 GB.
+    for (int once = 0; once < 1; once++) {
+        longitude = arc_tangent(point.x, off);
+        if (off < 0.0) {
+            longitude = side < 0.0 ? -abs(longitude) : abs(longitude);
+        }
+        float grown = off > 0.0 ? point.y + point.x * point.x / (radius + off) : radius - terrain.axis_distance_m;
+        found = vec2(point.z, grown);
+        if (!is_kind(terrain.base_kind, CYLINDER, radius)) {
+            found = geodetic(grown, point.z);
+        }
     }
     return vec3(terrain.middle_node.x + longitude * terrain.nodes_per_unit.x,
                 terrain.middle_node.y + found.x * terrain.nodes_per_unit.y,

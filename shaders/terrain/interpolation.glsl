@@ -11,9 +11,9 @@ mat4 values_around(int shift, ivec2 cell) {
     mat4 values = mat4(0.0);
     for (int row = 0; row < 4; row++) {
         int y = clamp(cell.y + row - 1, 0, last.y);
-        values[row] = vec4(highest_at(shift, ivec2(clamp(cell.x - 1, 0, last.x), y)),
-                           highest_at(shift, ivec2(cell.x, y)), highest_at(shift, ivec2(min(cell.x + 1, last.x), y)),
-                           highest_at(shift, ivec2(min(cell.x + 2, last.x), y)));
+        for (int column = 0; column < 4; column++) {
+            values[row][column] = highest_at(shift, ivec2(clamp(cell.x + column - 1, 0, last.x), y));
+        }
     }
     return values;
 }

@@ -13,11 +13,11 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
         return before;
     }
     Subsegment subsegment;
-    vec3 first = first_point(ray);
+    vec3 near = first_point(ray);
     int shift = finest_shift(ray.near_m);
-    int surface = entry_surface(ray, first, height_at(shift, first.xy));
+    int surface = entry_surface(ray, near, height_at(shift, near.xy));
     if (surface != 0) {
-        return Hit(ray.near_m, first.xy, surface_code(surface, shift, 1));
+        return Hit(ray.near_m, near.xy, surface_code(surface, shift, 1));
     }
     Met met = Met(-1.0, true);
     Clip clip = Clip(0.0, 1.0, TERRAIN);
@@ -29,7 +29,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
         bool is_last = false;
         int level = 0;
         while (true) {
-            subsegment = subsegment_of(ray, float(at) / float(WHOLE), float(units) / float(WHOLE));
+            subsegment = subsegment_of(ray, near, float(at) / float(WHOLE), float(units) / float(WHOLE));
             vec3 slack = slack_of(subsegment);
             vec2 low = min(subsegment.near.xy, subsegment.far.xy) - slack.xy;
             vec2 high = max(subsegment.near.xy, subsegment.far.xy) + slack.xy;
@@ -40,6 +40,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             if (lowest > highest_between(low - rounding, high + rounding, level)) {
                 at += units;
                 units = at & -at;
+                near = next_point(ray, subsegment, float(at) / float(WHOLE));
                 done = at >= WHOLE;
             } else {
                 is_last = is_straight(slack, finest_shift(subsegment.depth_m)) || units == 1;
@@ -62,6 +63,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             if (!done) {
                 at += units;
                 units = at & -at;
+                near = next_point(ray, subsegment, float(at) / float(WHOLE));
                 done = at >= WHOLE;
             }
         }

@@ -28,13 +28,14 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     RaySegment ray = ray_segment(eye, direction, limit_m);
     Subsegment subsegment;
     Hit hit = before;
+    vec3 near = vec3(0.0);
     bool done = !(ray.near_m < ray.far_m);
     if (!done) {
         int shift = finest_shift(ray.near_m);
-        vec3 first = first_point(ray);
-        int surface = entry_surface(ray, first, height_at(shift, first.xy));
+        near = first_point(ray);
+        int surface = entry_surface(ray, near, height_at(shift, near.xy));
         if (surface != 0) {
-            hit = Hit(ray.near_m, first.xy, surface_code(surface, shift, 1));
+            hit = Hit(ray.near_m, near.xy, surface_code(surface, shift, 1));
             done = true;
         }
     }
@@ -51,7 +52,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     while (true) {
         bool is_last = false;
         while (true) {
-            subsegment = subsegment_of(ray, float(at) / float(WHOLE), float(units) / float(WHOLE));
+            subsegment = subsegment_of(ray, near, float(at) / float(WHOLE), float(units) / float(WHOLE));
             vec3 slack = slack_of(subsegment);
             vec2 low = min(subsegment.near.xy, subsegment.far.xy) - slack.xy;
             vec2 high = max(subsegment.near.xy, subsegment.far.xy) + slack.xy;
@@ -62,6 +63,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             if (lowest > highest_below(low - rounding_nodes, high + rounding_nodes, shift)) {
                 at += units;
                 units = at & -at;
+                near = next_point(ray, subsegment, float(at) / float(WHOLE));
                 done = at >= WHOLE;
             } else if ((shift <= finest && is_straight(slack, finest)) || units == 1) {
                 is_last = true;
@@ -82,6 +84,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             if (!done) {
                 at += units;
                 units = at & -at;
+                near = next_point(ray, subsegment, float(at) / float(WHOLE));
                 done = at >= WHOLE;
             }
         }

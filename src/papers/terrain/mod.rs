@@ -460,7 +460,9 @@ impl Paper for Terrain {
                 .to_owned()
         });
         let unheeded = warnings::unheeded(&self.parameters, &self.given, self.variant);
-        let of_variant = unpacked.into_iter().chain(unread).chain(unheeded).chain(self.strays.iter().cloned());
+        let drowned = warnings::drowned(self.scene.base_level_m, self.scene.range_m);
+        let of_variant =
+            unpacked.into_iter().chain(drowned).chain(unread).chain(unheeded).chain(self.strays.iter().cloned());
         voids.into_iter().chain(winding).chain(haze).chain(lacking).chain(of_variant).collect()
     }
 

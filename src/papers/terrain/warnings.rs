@@ -31,6 +31,16 @@ pub fn off_the_maps(objects: &[Mesh], extent: &Extent) -> Vec<String> {
     (1..).zip(objects).filter_map(warning).collect()
 }
 
+/// A line on a base that lies over all ground, so that nothing of it is seen; `range_m` is its lowest and highest above the base, metres.
+pub fn drowned(base_level_m: f64, range_m: (f64, f64)) -> Option<String> {
+    let highest_m = base_level_m + range_m.1;
+    (range_m.1 < 0.0).then(|| {
+        format!(
+            "`base-level` {base_level_m} lies over all ground, whose highest is at {highest_m:.1} metres: the base alone is seen"
+        )
+    })
+}
+
 /// A line that names them, if there are any.
 pub fn unheeded(parameters: &Parameters, given: &Given, variant: Variant) -> Option<String> {
     let walks = matches!(variant, Variant::DdaCompute | Variant::DdaFragment);
@@ -63,6 +73,16 @@ mod tests {
         assert_eq!(said.len(), 2, "{said:?}");
         assert!(said[0].starts_with("`object` 2 of 3, ") && said[1].starts_with("`object` 3 of 3, "), "{said:?}");
         assert!(said[0].contains("it reaches from 39") && said[0].ends_with("the maps from -500,-300 to 500,300"));
+    }
+
+    #[test]
+    fn a_base_over_all_ground_is_told_with_both_heights() {
+        assert_eq!(drowned(120.0, (-20.0, 0.0)), None);
+        let said = drowned(10000.0, (-9900.0, -8765.5)).unwrap();
+        assert_eq!(
+            said,
+            "`base-level` 10000 lies over all ground, whose highest is at 1234.5 metres: the base alone is seen"
+        );
     }
 
     #[test]
