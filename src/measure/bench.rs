@@ -18,7 +18,7 @@ use crate::report::environment;
 use crate::report::record::{InputFile, Limits, Loading, Run};
 use crate::report::trace::TraceRun;
 use crate::scene::loading::LoadParts;
-use crate::scene::source_sha256;
+use crate::scene::{notes, source_sha256};
 
 /// The input of a study with the time that loading it took.
 pub struct Loaded<S: Study> {
@@ -28,6 +28,8 @@ pub struct Loaded<S: Study> {
     pub load_ms: f64,
     /// Times of the steps of loading its mesh files; none where there are none.
     pub loading: Option<Loading>,
+    /// Notes on what readers passed over in its files, a line each.
+    pub notes: Vec<String>,
 }
 
 /// Loads a study's input.
@@ -36,6 +38,7 @@ pub struct Loaded<S: Study> {
 /// As [`Study::load`].
 pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
     LoadParts::take();
+    notes::take();
     let started = Instant::now();
     let scene = study.load()?;
     let load_ms = started.elapsed().as_secs_f64() * 1e3;
@@ -50,7 +53,7 @@ pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
         from_cache: parts.from_cache,
     };
     let has_files = parts.bytes > 0 || parts.from_cache > 0;
-    Ok(Loaded { scene, load_ms, loading: has_files.then_some(loading) })
+    Ok(Loaded { scene, load_ms, loading: has_files.then_some(loading), notes: notes::take() })
 }
 
 /// Measures papers, each with the shaders that it is made of, again and again until their buffers suffice. First use is that
@@ -93,7 +96,7 @@ pub fn measure_settled(
 }
 
 /// Triangles of files that are read before it is known what device there is: moments.
-const QUICKLY_READ: u64 = 1 << 20;
+pub const QUICKLY_READ: u64 = 1 << 20;
 
 /// Loads a study's input and opens the device. Of large files the device comes first: what it cannot hold is refused
 /// unread.
@@ -271,7 +274,8 @@ impl<S: Study> Bench<'_, S> {
         let metrics = study.metrics(machine, &mut measured)?;
         measured.iter_mut().try_for_each(|(built, _)| inspect(machine, &mut built.paper))?;
         let validation = machine.check_validation()?;
-        let warnings = [machine.warnings(), self.limits.and_then(limits::warning).into_iter().collect()].concat();
+        let of_limits = self.limits.and_then(limits::warning).into_iter().collect();
+        let warnings = [machine.warnings(), of_limits, loaded.notes.clone()].concat();
         let identity = study.identity();
         let runs = measured.iter().zip(metrics).zip(sides).map(|(((built, measurement), metrics), (study, _))| {
             let metadata = RunMetadata {

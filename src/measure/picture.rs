@@ -11,6 +11,7 @@ use crate::gpu::bindings::Resource;
 use crate::gpu::{self, Device, Mode, transfer};
 use crate::image::{Raster, Rgba8};
 use crate::measure::{Kind, Paper, Target};
+use crate::scene::notes;
 
 /// Steps of a state in one frame of the recorder.
 const STEPS: u32 = 128;
@@ -77,6 +78,7 @@ pub fn render_unless(
             break;
         }
     }
+    machine.drawn.add(notes::take());
     machine.drawn.add(paper.warnings());
     let view = paper.picture();
     let texels = transfer::read_image(&machine.device, view)?;

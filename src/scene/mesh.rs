@@ -25,6 +25,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Farthest that a coordinate may be from 0: squares of distances are then numbers that single precision has, in papers and
+    /// shaders.
+    pub const MOST_COORDINATE: f32 = 1e18;
+    /// Shortest that the longest side of the box around a mesh may be, for the same reason.
+    pub const LEAST_SIDE: f32 = 1e-18;
+
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
@@ -33,6 +39,11 @@ impl Mesh {
     /// The smallest box around all positions.
     pub fn bounds(&self) -> Bounds {
         Bounds::of_points(self.positions.iter().copied())
+    }
+
+    /// True where no coordinate is farther from 0 than [`Self::MOST_COORDINATE`], of a mesh that was placed.
+    pub fn is_within_reach(&self) -> bool {
+        self.positions.iter().all(is_within_reach)
     }
 
     /// The mesh with positions and normals in the space that `transform`, an affine matrix, leads
@@ -66,8 +77,8 @@ impl Mesh {
         self.normals = normals::smooth(&self.positions, &self.indices);
     }
 
-    /// Checks what the field descriptions promise, and that at least one triangle has a positive
-    /// area.
+    /// Checks what the field descriptions promise, that at least one triangle has a positive area, and that the mesh is neither
+    /// too far nor too small ([`Self::MOST_COORDINATE`], [`Self::LEAST_SIDE`]).
     ///
     /// # Errors
     /// The first violation, with the number of its vertex or triangle.
@@ -143,17 +154,26 @@ impl Parts {
     }
 }
 
-/// Every coordinate of every position must be finite, and there must not be more than 32-bit
-/// indices can name.
+/// False for a position that is not finite, too.
+fn is_within_reach(position: &Vec3) -> bool {
+    position.abs().cmple(Vec3::splat(Mesh::MOST_COORDINATE)).all()
+}
+
+/// Every coordinate of every position must be finite and within reach, and there must not be more than 32-bit
+/// indices can name. No message shows a value: that of a glTF may come from any file.
 pub(super) fn check_positions(positions: &[Vec3]) -> Result<(), Fault> {
     if positions.len() >= u32::MAX as usize || positions.is_empty() {
         let reason = format!("{} vertices; a mesh needs from 1 to 4294967294", positions.len());
         return Err(Fault::new(Place::Whole, reason));
     }
-    match positions.iter().position(|position| !position.is_finite()) {
-        Some(vertex) => Err(Fault::new(Place::Vertex(vertex), "its position is not finite")),
-        None => Ok(()),
-    }
+    let Some(vertex) = positions.iter().position(|position| !is_within_reach(position)) else { return Ok(()) };
+    let reason = if positions[vertex].is_finite() {
+        let most = Mesh::MOST_COORDINATE;
+        format!("its position is beyond {most:e}, too far to reckon with; the mesh has to be scaled down")
+    } else {
+        "its position is not finite".to_owned()
+    };
+    Err(Fault::new(Place::Vertex(vertex), reason))
 }
 
 fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
@@ -174,6 +194,12 @@ fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
     if !indices.chunks_exact(3).any(has_area) {
         let reason =
             format!("none of its {} triangles has a positive area; a mesh needs at least one", indices.len() / 3);
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    let least = Mesh::LEAST_SIDE;
+    if Bounds::of_points(positions.iter().copied()).diagonal().max_element() < least {
+        let reason =
+            format!("its longest side is below {least:e}, too small to reckon with; the mesh has to be scaled up");
         return Err(Fault::new(Place::Whole, reason));
     }
     Ok(())
@@ -246,6 +272,7 @@ mod tests {
         };
         assert!(good().validate().is_ok());
         assert_eq!(faulty(|m| m.positions[3].y = f32::NAN).place, Place::Vertex(3));
+        assert_eq!(faulty(|m| m.positions[2].z = -1.1e18).place, Place::Vertex(2));
         assert_eq!(faulty(|m| m.indices[4] = 24).place, Place::Face(1));
         assert_eq!(faulty(|m| m.normals[5] *= 2.0).place, Place::Vertex(5));
         assert_eq!(faulty(|m| m.normals[5].x = f32::NAN).place, Place::Vertex(5));
@@ -254,6 +281,7 @@ mod tests {
             |m: &mut Mesh| m.indices.clear(),
             |m: &mut Mesh| m.indices.truncate(4),
             |m: &mut Mesh| m.positions.fill(Vec3::ONE),
+            |m: &mut Mesh| m.positions.iter_mut().for_each(|p| *p *= 1e-19),
             |m: &mut Mesh| *m = Mesh::default(),
             |m: &mut Mesh| m.normals.truncate(3),
             |m: &mut Mesh| m.texture_coordinates.truncate(3),

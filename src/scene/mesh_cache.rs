@@ -24,7 +24,7 @@ pub(super) const LEAST_BYTES: u64 = 1 << 20;
 const MOST_BYTES: u64 = 4 << 30;
 const ENDING: &str = "mesh";
 /// The layout of an entry and the readers that it came from: one more wherever either gives something else.
-const MAGIC: [u8; 16] = *b"fumarole mesh 1\n";
+const MAGIC: [u8; 16] = *b"fumarole mesh 2\n";
 
 /// The name of an entry.
 pub(super) struct Key(String);

@@ -20,6 +20,7 @@ pub mod loading;
 mod mesh;
 mod mesh_cache;
 mod normals;
+pub mod notes;
 mod numbering;
 mod polygon;
 pub mod random;

@@ -134,7 +134,7 @@ impl Study for Setup {
     type Paper = Caustics;
 
     /// Checks the parameters, loads the meshes, scales each to two metres and stands it on the pool's floor, one beside
-    /// the other. A mesh too small or too large to be scaled is an [`Error::Input`].
+    /// the other.
     fn load(&self) -> Result<Scene, Error> {
         self.parameters.validate()?;
         let floor_m = -self.parameters.water_depth_m;
@@ -143,13 +143,7 @@ impl Study for Setup {
         for source in &self.meshes {
             let mesh = source.load_with(&MeshOptions::to_draw(self.crease_deg))?;
             let bounds = mesh.bounds();
-            let longest = bounds.diagonal().max_element();
-            let scale = RECEIVER_SIZE_M / longest;
-            if !scale.is_normal() {
-                return Err(Error::Input(format!(
-                    "placing mesh {source}: a side of {longest:e} cannot be scaled to {RECEIVER_SIZE_M} m; rescale the file"
-                )));
-            }
+            let scale = RECEIVER_SIZE_M / bounds.diagonal().max_element();
             let size = bounds.diagonal() * scale;
             let foot = Vec3::new(bounds.min.x, bounds.min.y, bounds.center().z) * scale;
             let place =

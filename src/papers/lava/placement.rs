@@ -41,7 +41,7 @@ impl Object {
     /// The mesh in the simulation space, whose sides are `space_m`.
     ///
     /// # Errors
-    /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates that leave the range of floats.
+    /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates beyond [`Mesh::MOST_COORDINATE`].
     pub fn load(&self, space_m: Vec3, crease_deg: f32) -> Result<Mesh, Error> {
         let mesh = self.source.load_with(&MeshOptions::to_draw(crease_deg))?;
         let bounds = mesh.bounds();
@@ -59,10 +59,14 @@ impl Object {
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot.as_vec3());
         let placed = mesh.placed(&place);
-        if placed.positions.iter().all(|p| p.is_finite()) {
+        if placed.is_within_reach() {
             return Ok(placed);
         }
-        Err(Error::Input(format!("`object` {}: its coordinates are beyond 3.4e38 metres; scale it down", self.text())))
+        let most_m = Mesh::MOST_COORDINATE;
+        Err(Error::Input(format!(
+            "`object` {}: its coordinates are beyond {most_m:e} metres; scale it down",
+            self.text()
+        )))
     }
 }
 
@@ -262,8 +266,8 @@ mod tests {
         let placed = bounds("box@0.5,0.25,1,90,0.5");
         assert!(is_near(placed.diagonal(), 0.5 * Vec3::new(side.z, side.y, side.x)), "{placed:?}");
         assert!(is_near(placed.min + 0.25 * Vec3::new(side.z, 0.0, side.x), Vec3::new(0.5, 0.25, 1.0)), "{placed:?}");
-        assert!(parse("box@0,0,0,0,1e38").unwrap().load(space, 30.0).is_ok());
-        assert!(parse("box@0,0,0,0,3e38").unwrap().load(space, 30.0).is_err());
+        assert!(parse("box@0,0,0,0,4e17").unwrap().load(space, 30.0).is_ok());
+        assert!(parse("box@0,0,0,0,2e18").unwrap().load(space, 30.0).is_err());
     }
 
     #[test]

@@ -154,11 +154,16 @@ impl Setup {
             return Ok(meshes);
         }
         let collider = Collider::new(&self.parameters, &Inputs { maps, ..Inputs::default() });
-        let place = |(object, mesh): (&ObjectSource, Mesh)| match &object.place {
-            None => mesh,
-            Some(stand) => stand.place(&mesh, &collider),
+        let place = |(object, mesh): (&ObjectSource, Mesh)| {
+            let Some(stand) = &object.place else { return Ok(mesh) };
+            let placed = stand.place(&mesh, &collider);
+            if placed.is_within_reach() {
+                return Ok(placed);
+            }
+            let most_m = Mesh::MOST_COORDINATE;
+            Err(Error::Input(format!("`object` {object}: its coordinates are beyond {most_m:e} metres; scale it down")))
         };
-        Ok(self.objects.iter().zip(meshes).map(place).collect())
+        self.objects.iter().zip(meshes).map(place).collect()
     }
 
     /// Triangles of a synthetic volcano that is larger than most devices' images.

@@ -1,14 +1,16 @@
 use super::gltf_accessor;
 use super::gltf_buffer::Buffers;
 use super::gltf_document::{foreign, read_document};
+use super::gltf_scene::{PlacedMesh, note_what_is_left, placed_meshes};
 use super::stream::{Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::mesh::{Parts, Placement};
 use crate::scene::normals::double_area_vector;
+use crate::scene::notes;
 use ::gltf::Glb;
 use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::mesh::Mode;
-use ::gltf::{Document, Primitive, Semantic};
+use ::gltf::{Primitive, Semantic};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -45,7 +47,7 @@ const INDEX_TYPES: [(Dimensions, DataType); 3] =
 ///
 /// The first scene serves where none is the default. Buffers may be embedded or lie in files
 /// below `directory`. Texture coordinates are the first set. Skins, morph targets, points and
-/// lines are left out, and so are the names of meshes and materials and the colours unless they are asked for.
+/// lines are left out, which a note says, and so are the names of meshes and materials and the colours unless they are asked for.
 pub(super) fn read(stream: &mut Stream<'_>, directory: &Path) -> Result<Parts, Stop> {
     let bytes = stream.rest()?;
     let parts = parse(&bytes, directory, stream.keeps_tags)?;
@@ -84,7 +86,7 @@ fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
     };
     let mut triangles = 0_u64;
     let meshes = placed_meshes(&document)?;
-    let parts = meshes.iter().flat_map(|(mesh, _)| mesh.primitives());
+    let parts = meshes.iter().flat_map(|placed| placed.mesh.primitives());
     for (number, part) in parts.enumerate() {
         if number >= MAX_PARTS {
             return Ok(None);
@@ -107,14 +109,13 @@ fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Faul
     let document = read_document(&text)?;
     let buffers = Buffers::read(&document, chunk, directory)?;
     let meshes = placed_meshes(&document)?;
-    let is_drawn = |part: &Primitive| matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
-    let placed = || {
-        let parts = meshes.iter().flat_map(|(mesh, transform)| {
+    let parts = || {
+        meshes.iter().flat_map(|PlacedMesh { mesh, transform, .. }| {
             mesh.primitives().map(|part| Placed { mesh: mesh.index(), name: mesh.name(), part, transform: *transform })
-        });
-        parts.filter(|placed| is_drawn(&placed.part))
+        })
     };
-    let (vertices, corners) = check_total(placed(), bytes.len() + buffers.total_bytes())?;
+    let Total { vertices, corners, others } = Total::of(parts(), bytes.len() + buffers.total_bytes())?;
+    let placed = || parts().filter(Placed::has_triangles);
     // Nothing is kept before all of it is seen to be good: a small file can make a large mesh.
     let mut has_area = None;
     for part in placed() {
@@ -132,10 +133,11 @@ fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Faul
         merged.append(&part, &buffers).map_err(|reason| part.fault(reason))?;
         merged.tag(&part, &buffers)?;
     }
+    note_what_is_left(&document, &meshes, others);
     merged.finish()
 }
 
-/// A primitive that makes triangles.
+/// A primitive of the scene.
 struct Placed<'a> {
     /// Number of its mesh.
     mesh: usize,
@@ -147,6 +149,11 @@ struct Placed<'a> {
 }
 
 impl Placed<'_> {
+    /// False for points and lines.
+    fn has_triangles(&self) -> bool {
+        matches!(self.part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+    }
+
     fn fault(&self, reason: String) -> Fault {
         Fault::new(Place::Part(format!("mesh {}, primitive {}", self.mesh, self.part.index())), reason)
     }
@@ -163,32 +170,53 @@ fn check_container(bytes: &[u8]) -> Result<(), Fault> {
             );
             Err(Fault::new(Place::Byte(8), reason))
         }
-        _ => Ok(()),
+        Some(length) => {
+            let more = bytes.len() - length as usize;
+            if more > 0 {
+                notes::add(format!("{more} bytes behind the {length} that its header states are left out"));
+            }
+            Ok(())
+        }
+        None => Ok(()),
     }
 }
 
-/// Vertices and corners of a scene, at most; refuses one that is far larger than the file and its buffers, of so many
-/// bytes together.
-fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<(usize, usize), Fault> {
-    let most = size_bytes.clamp(MAX_SHARED_CORNERS, MAX_CORNERS);
-    let (mut vertices, mut corners, mut parts) = (0_usize, 0_usize, 0_usize);
-    for Placed { part, .. } in placed {
-        let count = part.get(&Semantic::Positions).map_or(0, |positions| positions.count());
-        let indices = part.indices().map_or(count, |indices| indices.count());
-        let per_index = if part.mode() == Mode::Triangles { 1 } else { 3 };
-        vertices = vertices.saturating_add(count);
-        corners = corners.saturating_add(indices.saturating_mul(per_index));
-        parts += 1;
-        if vertices.max(corners) > most || parts > MAX_PARTS {
-            let reason = format!(
-                "its scene has more than the {most} vertices, {} triangles or {MAX_PARTS} primitives that a file of its \
-                 size may make; simplify it",
-                most / 3
-            );
-            return Err(Fault::new(Place::Whole, reason));
+/// Sizes of what a scene makes, at most.
+#[derive(Default)]
+struct Total {
+    vertices: usize,
+    /// Of triangles.
+    corners: usize,
+    /// Primitives that are points or lines.
+    others: usize,
+}
+
+impl Total {
+    /// Refuses a scene that is far larger than the file and its buffers, of so many bytes together.
+    fn of<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<Self, Fault> {
+        let most = size_bytes.clamp(MAX_SHARED_CORNERS, MAX_CORNERS);
+        let mut total = Self::default();
+        for (number, placed) in placed.enumerate() {
+            if placed.has_triangles() {
+                let count = placed.part.get(&Semantic::Positions).map_or(0, |positions| positions.count());
+                let indices = placed.part.indices().map_or(count, |indices| indices.count());
+                let per_index = if placed.part.mode() == Mode::Triangles { 1 } else { 3 };
+                total.vertices = total.vertices.saturating_add(count);
+                total.corners = total.corners.saturating_add(indices.saturating_mul(per_index));
+            } else {
+                total.others += 1;
+            }
+            if total.vertices.max(total.corners) > most || number >= MAX_PARTS {
+                let reason = format!(
+                    "its scene has more than the {most} vertices, {} triangles or {MAX_PARTS} primitives that a file of \
+                     its size may make; simplify it",
+                    most / 3
+                );
+                return Err(Fault::new(Place::Whole, reason));
+            }
         }
+        Ok(total)
     }
-    Ok((vertices, corners))
 }
 
 /// The text of a document, and the binary chunk beside it.
@@ -202,30 +230,6 @@ fn open_container(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
     check_container(bytes)?;
     let file = Glb::from_slice(bytes).map_err(foreign)?;
     Ok((file.json, file.bin))
-}
-
-/// The meshes of the scene's nodes with their transforms to the world.
-fn placed_meshes(document: &Document) -> Result<Vec<(::gltf::Mesh<'_>, Mat4)>, Fault> {
-    let scene = document
-        .default_scene()
-        .or_else(|| document.scenes().next())
-        .ok_or_else(|| Fault::new(Place::Whole, "it has no scene"))?;
-    let mut placed = Vec::new();
-    let mut is_visited = vec![false; document.nodes().len()];
-    let mut open: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
-    open.reverse();
-    while let Some((node, parent)) = open.pop() {
-        if std::mem::replace(&mut is_visited[node.index()], true) {
-            let reason = "it is reached twice; nodes must form trees";
-            return Err(Fault::new(Place::Part(format!("node {}", node.index())), reason));
-        }
-        let transform = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
-        placed.extend(node.mesh().map(|mesh| (mesh, transform)));
-        let first = open.len();
-        open.extend(node.children().map(|child| (child, transform)));
-        open[first..].reverse();
-    }
-    Ok(placed)
 }
 
 /// Checks all that [`Merged::append`] reads and all that becomes of it. True for a triangle of positive area, which is

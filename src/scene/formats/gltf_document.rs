@@ -13,6 +13,9 @@ const OBJECT_BYTES: usize = 512;
 const PER_BYTE: usize = 16;
 const SPARE_BYTES: usize = 64 << 20;
 
+/// Beginnings of the names of extensions that change how surfaces look, of which nothing is read.
+const OF_LOOKS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
+
 /// The lists whose parts the library takes for something larger than their text.
 #[derive(Deserialize)]
 struct Outline {
@@ -164,6 +167,27 @@ impl<'de> Deserialize<'de> for Version {
     }
 }
 
+/// Passes for what a reader of version 2.0 may read.
+fn check_version(asset: &json::Asset) -> Result<(), Fault> {
+    let refused = |version: &str, what: &str| {
+        let version: String = version.chars().take(40).collect();
+        let reason = format!("its {what} is {version:?}, and glTF 2.0 is read; export it as that");
+        Fault::new(Place::Part("asset".to_owned()), reason)
+    };
+    let numbers = |version: &str| {
+        let (major, minor) = version.split_once('.').unwrap_or((version, "0"));
+        Some((major.parse::<u32>().ok()?, minor.parse::<u32>().ok()?))
+    };
+    // Later ones of the same major number are read by what they have in common.
+    if numbers(&asset.version).is_none_or(|(major, _)| major != 2) {
+        return Err(refused(&asset.version, "version"));
+    }
+    match &asset.min_version {
+        Some(least) if numbers(least).is_none_or(|least| least > (2, 0)) => Err(refused(least, "minVersion")),
+        _ => Ok(()),
+    }
+}
+
 pub(super) fn foreign(error: ::gltf::Error) -> Fault {
     Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"))
 }
@@ -176,7 +200,15 @@ pub(super) fn read_document(text: &[u8]) -> Result<Document, Fault> {
     };
     check_memory(text, &from_slice(text).map_err(invalid)?)?;
     // Not by the library's reader of files, which takes text that begins like a binary file for another.
-    let json: json::Root = from_slice(text).map_err(invalid)?;
+    let mut json: json::Root = from_slice(text).map_err(invalid)?;
+    check_version(&json.asset)?;
+    // The library knows none of them, and calls a file with any invalid.
+    json.extensions_required.retain(|name| !OF_LOOKS.iter().any(|begin| name.starts_with(begin)));
+    if let Some(name) = json.extensions_required.first() {
+        let name: String = name.chars().take(40).collect();
+        let reason = format!("it requires the extension {name:?}, which is not read; export it without");
+        return Err(Fault::new(Place::Whole, reason));
+    }
     // The validation that follows looks at the accessor of the positions before it looks whether
     // there is one.
     let accessor_count = json.accessors.len();

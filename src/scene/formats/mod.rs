@@ -6,6 +6,7 @@ mod gltf;
 mod gltf_accessor;
 pub(super) mod gltf_buffer;
 pub(super) mod gltf_document;
+mod gltf_scene;
 mod obj;
 mod ply;
 mod stl;
@@ -22,7 +23,7 @@ use super::error::{Asset, Fault};
 use super::loading::{Conditions, LoadParts, MeshOptions, Watch, timed};
 use super::mesh::Parts;
 use super::mesh_cache::{self, Key};
-use super::{Error, Mesh, file};
+use super::{Error, Mesh, file, notes};
 
 /// Largest file that is read; 32-bit vertex numbers do not reach much further.
 pub(super) const MAX_FILE_BYTES: u64 = 4 << 30;
@@ -62,14 +63,15 @@ pub(super) fn load(path: &Path, options: &MeshOptions, conditions: &Conditions) 
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut stream = Stream::new(file, size_bytes, &conditions.watch);
     stream.keeps_tags = options.keeps_tags;
-    let parts = parts(read, &mut stream, directory).map_err(|stop| stopped(path, stop))?;
+    let (parts, has_notes) = notes::of(Asset::Mesh, path, || parts(read, &mut stream, directory));
+    let parts = parts.map_err(|stop| stopped(path, stop))?;
     let mut mesh = parts.into_mesh(options.crease_deg).map_err(|fault| malformed(path, fault))?;
     conditions.watch.look(size_bytes, size_bytes).map_err(|stop| stopped(path, stop))?;
     if options.is_optimised {
         timed(|parts| &mut parts.optimise_ms, || mesh.optimise_order());
     }
-    // A file that was written to meanwhile is not the one that the key tells of.
-    if let Some((folder, key)) = entry.filter(|_| written() == written_before) {
+    // A file that was written to meanwhile is not the one that the key tells of, and one with notes is to tell them each time.
+    if let Some((folder, key)) = entry.filter(|_| written() == written_before && !has_notes) {
         timed(|parts| &mut parts.cache_ms, || mesh_cache::keep(folder, &key, &mesh));
     }
     Ok(Mesh { name: name.into_owned(), ..mesh })

@@ -8,6 +8,7 @@ use super::stream::{Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::loading::LoadParts;
 use crate::scene::mesh::Parts;
+use crate::scene::notes;
 use crate::scene::numbering::Numbering;
 
 /// Header and triangle count of a binary file.
@@ -21,7 +22,8 @@ const MAX_LINE_BYTES: usize = 1 << 10;
 /// Reads an STL file, binary or text. Vertices at the same position become one; normals are
 /// computed anew, since an STL file has only those of its facets.
 ///
-/// The size tells the kinds apart, because many binary files start with `solid` as well.
+/// The size and the bytes at the start tell the kinds apart, because many binary files start with `solid` as well. Triangles
+/// that a binary file has beyond those that it counts are a fault; a note says where anything else follows.
 pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     let mut start = Vec::new();
     stream.append(&mut start, PREFIX_BYTES)?;
@@ -42,8 +44,29 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
             );
             Err(Fault::new(Place::Byte(PREFIX_BYTES - 4), reason).into())
         }
-        Some(claimed_bytes) => read_binary((claimed_bytes as usize - PREFIX_BYTES) / TRIANGLE_BYTES, stream),
+        Some(claimed_bytes) => {
+            let count = (claimed_bytes as usize - PREFIX_BYTES) / TRIANGLE_BYTES;
+            check_rest(count, size_bytes - claimed_bytes)?;
+            read_binary(count, stream)
+        }
     }
+}
+
+/// Refuses a binary file whose bytes behind the triangles that it counts are triangles by their number, and tells of others.
+fn check_rest(count: usize, rest_bytes: u64) -> Result<(), Fault> {
+    if rest_bytes == 0 {
+        return Ok(());
+    }
+    if rest_bytes.is_multiple_of(TRIANGLE_BYTES as u64) {
+        let more = rest_bytes / TRIANGLE_BYTES as u64;
+        let reason = format!(
+            "its header counts {count} triangles, and the file has room for {more} more; it was not finished or is damaged: \
+             write it anew"
+        );
+        return Err(Fault::new(Place::Byte(PREFIX_BYTES - 4), reason));
+    }
+    notes::add(format!("{rest_bytes} bytes behind the {count} triangles that its header counts are left out"));
+    Ok(())
 }
 
 /// Triangles that a file of `size_bytes` with this start has, where the start tells.
@@ -61,8 +84,9 @@ fn claimed_bytes(start: &[u8]) -> Option<u64> {
     Some(PREFIX_BYTES as u64 + u64::from(count) * TRIANGLE_BYTES as u64)
 }
 
+/// True for a start of words: binary files that begin with one have a zero in the header, or in the highest byte of the count.
 fn is_text(start: &[u8]) -> bool {
-    starts_with_keyword(start.trim_ascii_start(), b"solid")
+    starts_with_keyword(start.trim_ascii_start(), b"solid") && !start.contains(&0)
 }
 
 fn starts_with_keyword(text: &[u8], keyword: &[u8]) -> bool {
@@ -270,8 +294,33 @@ mod tests {
         for header in [&b"exported"[..], b"solid by an exporter\n", b"\xff\xfe"] {
             assert_eq!(parse(binary(header)).unwrap(), mesh);
         }
-        let padded = [binary(b""), vec![0; 7]].concat();
-        assert_eq!(parse(padded).unwrap(), mesh);
+        for header in [&b"exported"[..], b"solid by an exporter\n"] {
+            let padded = [binary(header), vec![0; 7]].concat();
+            assert_eq!(parse(padded).unwrap(), mesh);
+        }
+    }
+
+    #[test]
+    fn what_follows_the_triangles_is_told_and_more_of_them_are_a_fault() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
+        let read = |rest: usize| {
+            std::fs::write(&path, [binary(b""), vec![0; rest]].concat()).unwrap();
+            notes::take();
+            let mesh = crate::scene::MeshSource::File(path.clone()).load().map_err(|error| error.to_string());
+            mesh.map(|mesh| (mesh.triangle_count(), notes::take().join(" ")))
+        };
+        assert_eq!(read(0), Ok((2, String::new())));
+        for rest in [1, 49, 51, 120] {
+            let (count, told) = read(rest).unwrap();
+            let part = format!("a.stl: {rest} bytes behind the 2 triangles that its header counts are left out");
+            assert!(count == 2 && told.contains(&part), "{rest}: {told}");
+        }
+        for (rest, more) in [(50, "1 more"), (500, "10 more")] {
+            let fault = read(rest).unwrap_err();
+            let is_told = fault.contains("byte 80: its header counts 2 triangles") && fault.contains(more);
+            assert!(is_told, "{rest}: {fault}");
+        }
     }
 
     #[test]

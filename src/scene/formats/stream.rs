@@ -54,13 +54,17 @@ impl<'a> Stream<'a> {
         self.done_bytes
     }
 
+    /// Bytes that are not read yet.
+    pub fn left_bytes(&self) -> u64 {
+        self.size_bytes - self.done_bytes
+    }
+
     /// Appends the next bytes, `most` or as many as are left, and gives their number.
     ///
     /// # Errors
     /// [`Stop::Read`], [`Stop::Interrupted`].
     pub fn append(&mut self, buffer: &mut Vec<u8>, most: usize) -> Result<usize, Stop> {
-        let left = self.size_bytes - self.done_bytes;
-        let wanted = left.min(most as u64) as usize;
+        let wanted = self.left_bytes().min(most as u64) as usize;
         buffer.try_reserve_exact(wanted).map_err(|error| Stop::Read(error.into()))?;
         let before = buffer.len();
         while buffer.len() - before < wanted {
@@ -119,6 +123,11 @@ impl<'s, 'a> Lines<'s, 'a> {
             }
             searched = self.buffer.len();
         }
+    }
+
+    /// Bytes that are read and were not given yet.
+    pub fn rest(&self) -> &[u8] {
+        &self.buffer[self.used..]
     }
 
     /// One past the last end of a whole line at or after `from`.

@@ -52,10 +52,10 @@ impl RowSource {
     /// [`volcano()`](super::volcano()), of which a few rows are held.
     ///
     /// # Errors
-    /// A side outside [`HeightMap::SIDE`].
+    /// A side outside [`HeightMap::SIDE`]; [`Error::Interrupted`].
     pub fn volcano(side: u32, seed: u64) -> Result<Self, Error> {
         super::map::check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
-        let rows = VolcanoRows::new(side, seed);
+        let rows = VolcanoRows::new(side, seed)?;
         Ok(RowSource { map: rows.map()?, factor: 1.0, source: Source::Volcano(rows) })
     }
 
@@ -126,7 +126,7 @@ impl RowSource {
                 let mut first_row = 0;
                 while goes_on && first_row < height {
                     let rows = &mut block[..TOGETHER.min(height - first_row) * width];
-                    volcano.fill(first_row as u32, rows);
+                    volcano.fill(first_row as u32, rows)?;
                     goes_on = see(Rows::Steps(rows))?;
                     first_row += TOGETHER;
                 }

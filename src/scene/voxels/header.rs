@@ -9,6 +9,7 @@ use super::VoxelGrid;
 use super::raw::Raw;
 use crate::scene::binary::{skip, spare_bytes};
 use crate::scene::error::{Fault, Place};
+use crate::scene::notes;
 
 /// Layout, order and scale of the samples, by their header.
 #[derive(Debug, PartialEq)]
@@ -71,7 +72,12 @@ impl Header {
             Skip::Bytes(bytes) => start.saturating_add(bytes),
             Skip::ToTheEnd => size_bytes.saturating_sub(self.raw.bytes()?).max(start),
         };
-        self.raw.check_bytes(size_bytes.saturating_sub(start))?;
+        let left = size_bytes.saturating_sub(start);
+        self.raw.check_bytes(left)?;
+        let more = left - self.raw.bytes()?;
+        if more > 0 {
+            notes::add(format!("{more} bytes behind the samples that its header states are left out"));
+        }
         input.seek(SeekFrom::Start(start)).map_err(failed)?;
         self.made(self.raw.read(input, component)?)
     }
@@ -104,7 +110,9 @@ impl Header {
         skip(&mut input, skip_bytes).map_err(failed)?;
         let samples = self.raw.read(&mut input, component)?;
         // What closes the packing tells whether it is whole.
-        io::copy(&mut input.take(1), &mut io::sink()).map_err(failed)?;
+        if io::copy(&mut input.take(1), &mut io::sink()).map_err(failed)? > 0 {
+            notes::add("what is packed behind the samples that its header states is left out");
+        }
         self.made(samples)
     }
 
@@ -124,4 +132,39 @@ pub(super) fn unpacked<'a>(mut input: impl BufRead + 'a) -> io::Result<Box<dyn R
     } else {
         Box::new(ZlibDecoder::new(input))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{META, NRRD, gzip, loaded, nifti, nrrd, shorts};
+    use super::notes;
+
+    #[test]
+    fn what_follows_the_samples_is_told() {
+        let bytes = shorts(0..14);
+        let told = |files: &[(&str, &[u8])]| {
+            notes::take();
+            loaded(files, 0).unwrap();
+            notes::take().join(" ")
+        };
+        let behind = "4 bytes behind the samples that its header states are left out";
+        let packed = NRRD.replace("encoding: raw", "encoding: gzip");
+        let apart = NRRD.replace("key:=value: x", "data file: a.raw");
+        let scan = [nifti(false, &[]), vec![0; 4]].concat();
+        for (name, file, part) in [
+            ("a.nrrd", nrrd(NRRD, &bytes), behind),
+            ("a.mha", nrrd(META, &bytes), behind),
+            ("a.nii", scan.clone(), behind),
+            ("a.nii.gz", gzip(&scan), "what is packed behind the samples"),
+            ("a.nrrd", nrrd(&packed, &gzip(&bytes)), "what is packed behind the samples"),
+            ("a.nhdr", apart.clone().into_bytes(), behind),
+        ] {
+            let found = told(&[(name, &file), ("a.raw", &bytes)]);
+            assert!(found.starts_with("volume /") && found.contains(&format!("{name}: {part}")), "{name}: {found}");
+        }
+        assert_eq!(told(&[("a.nrrd", &nrrd(NRRD, &bytes[..24]))]), "");
+        // There they stand at the end, whatever is before them.
+        let end = apart.replace("data file", "byte skip: -1\ndata file");
+        assert_eq!(told(&[("a.nhdr", end.as_bytes()), ("a.raw", &bytes)]), "");
+    }
 }

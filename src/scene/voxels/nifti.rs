@@ -19,6 +19,9 @@ const HEADER_BYTES: usize = 348;
 /// Offset of the first sample of a file with both, at least.
 const FIRST_SAMPLE: u64 = HEADER_BYTES as u64 + 4;
 
+/// Length of the imaginary parts of a rotation, at most; some round them.
+const MOST_LENGTH: f64 = 1.01;
+
 /// Reads a file with its samples in it, or those beside its header, given either file.
 pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -109,18 +112,31 @@ fn header(input: &mut impl Read, is_one_file: bool) -> Result<Header, Fault> {
         let expected = if is_one_file { "n+1" } else { "ni1" };
         return Err(at(344, format!("its magic is not {expected}; it is damaged, or a scan of the older Analyze 7.5")));
     }
-    let dimensions: [u64; 8] = std::array::from_fn(|i| u64::try_from(bytes.short(40 + 2 * i)).unwrap_or(0));
-    let [axes, x, y, z, rest @ ..] = dimensions;
+    let axes = bytes.short(40);
     if !(3..=7).contains(&axes) {
-        return Err(at(40, format!("dim[0] is {}; a volume has 3 dimensions or more", bytes.short(40))));
+        return Err(at(40, format!("dim[0] is {axes}; a volume has 3 dimensions or more")));
     }
+    let mut dimensions = [0; 7];
+    for (axis, dimension) in (1..).zip(&mut dimensions[..axes as usize]) {
+        let (offset, count) = (40 + 2 * axis, bytes.short(40 + 2 * axis));
+        *dimension = u64::try_from(count)
+            .map_err(|_| at(offset, format!("dim[{axis}] is {count}; no axis has fewer samples than 0")))?;
+    }
+    let [x, y, z, rest @ ..] = dimensions;
     let size = check_size([x, y, z]).map_err(|reason| at(42, format!("dim {reason}")))?;
-    // Times, and values of a sample: each a volume of its own.
-    let components = rest[..axes as usize - 3].iter().map(|&count| count.max(1)).product();
-    let kind = kind(bytes.short(70))?;
+    // Times, and values of a sample: each a volume of its own. Many writers call one 0.
+    let components = rest.into_iter().map(|count| count.max(1)).product();
+    let (code, bits) = (bytes.short(70), bytes.short(72));
+    let kind = kind(code)?;
+    let own_bits = 8 * kind.bytes();
+    // Some writers leave it out.
+    if bits != 0 && u64::try_from(bits) != Ok(own_bits) {
+        let reason = format!("bitpix is {bits}, but a sample of datatype {code} has {own_bits} bits; it is damaged");
+        return Err(at(72, reason));
+    }
     let raw = Raw { size, kind, order: bytes.order, components, together: size.map(u64::from).iter().product() };
     raw.bytes()?;
-    let steps = steps(&bytes);
+    let steps = steps(&bytes)?;
     check_steps(steps)?;
     let offset = bytes.float(108);
     if !(0.0..1e9).contains(&offset) {
@@ -160,22 +176,29 @@ fn kind(code: i16) -> Result<Kind, Fault> {
 
 /// The steps of the axes by sform, else by qform, else by the distances alone; to the left, backwards and up, where the
 /// format has right, anterior and superior.
-fn steps(bytes: &Bytes) -> [DVec3; 3] {
+fn steps(bytes: &Bytes) -> Result<[DVec3; 3], Fault> {
     let turned = |step: DVec3| step * DVec3::new(-1.0, -1.0, 1.0);
     if bytes.short(254) > 0 {
         let [x, y, z] = [280, 296, 312].map(|offset| bytes.vector(offset));
-        return [0, 1, 2].map(|axis| turned(DVec3::new(x[axis], y[axis], z[axis])));
+        return Ok([0, 1, 2].map(|axis| turned(DVec3::new(x[axis], y[axis], z[axis]))));
     }
     let distances = bytes.vector(80);
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     if bytes.short(252) <= 0 {
-        return [0, 1, 2].map(|axis| turned(axes[axis] * distances[axis].abs()));
+        return Ok([0, 1, 2].map(|axis| turned(axes[axis] * distances[axis].abs())));
     }
-    let [b, c, d] = bytes.vector(256).to_array();
+    let imaginary = bytes.vector(256);
+    let (length, [b, c, d]) = (imaginary.length(), imaginary.to_array());
+    let is_rotation = length <= MOST_LENGTH;
+    if !is_rotation {
+        let reason =
+            format!("quatern_b, quatern_c and quatern_d have the length {length}; it is at most 1 in a rotation");
+        return Err(at(256, reason));
+    }
     // Rounding may leave nothing for the real part.
     let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();
     let rotation = DQuat::from_xyzw(b, c, d, a).normalize();
     let handed = if bytes.float(76) < 0.0 { -1.0 } else { 1.0 };
     let signs = DVec3::new(1.0, 1.0, handed);
-    [0, 1, 2].map(|axis| turned(rotation * axes[axis] * distances[axis].abs() * signs[axis]))
+    Ok([0, 1, 2].map(|axis| turned(rotation * axes[axis] * distances[axis].abs() * signs[axis])))
 }

@@ -4,18 +4,18 @@ use std::path::{Path, PathBuf};
 
 use super::{VoxelGrid, metaimage, nanovdb, nifti, nrrd};
 use crate::file;
-use crate::scene::Error;
 use crate::scene::error::{Asset, Fault};
+use crate::scene::{Error, notes};
 
 const KNOWN_ENDINGS: &str = ".nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .hdr, .img, .nvdb";
 
 /// Reads a volume, told apart by the file's ending; of samples of several values the component of that number, from 0, of
-/// several grids the grid.
+/// several grids the grid. A note says where more samples follow than the header states.
 ///
 /// # Errors
 /// A file that cannot be read, of an unknown format, or malformed, with the field that is wrong.
 pub fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
-    match ending(path).as_str() {
+    let read = || match ending(path).as_str() {
         "nrrd" | "nhdr" => nrrd::load(path, component),
         "mha" | "mhd" => metaimage::load(path, component),
         "nii" | "nii.gz" | "hdr" | "img" => nifti::load(path, component),
@@ -24,7 +24,8 @@ pub fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
             let (path, ending, known) = (path.to_owned(), ending.to_owned(), KNOWN_ENDINGS.to_owned());
             Err(Error::UnknownEnding { path, asset: Asset::Volume, ending, known })
         }
-    }
+    };
+    notes::of(Asset::Volume, path, read).0
 }
 
 /// The files that are read with one: the samples that its header names or that lie beside it, or the header.

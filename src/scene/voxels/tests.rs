@@ -29,14 +29,14 @@ fn message(files: &[(&str, &[u8])]) -> String {
     message
 }
 
-const NRRD: &str = "NRRD0004\n# a comment: with a colon\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\n\
+pub(super) const NRRD: &str = "NRRD0004\n# a comment: with a colon\ntype: short\ndimension: 3\nsizes: 3 2 2\nendian: little\n\
     encoding: raw\nspace: right-anterior-superior\nspace directions: (0.5,0,0) (0, 2,0) (0,0.1,3)\nkey:=value: x\n\n";
 
-fn shorts(values: impl IntoIterator<Item = i16>) -> Vec<u8> {
+pub(super) fn shorts(values: impl IntoIterator<Item = i16>) -> Vec<u8> {
     values.into_iter().flat_map(i16::to_le_bytes).collect()
 }
 
-fn nrrd(header: &str, samples: &[u8]) -> Vec<u8> {
+pub(super) fn nrrd(header: &str, samples: &[u8]) -> Vec<u8> {
     [header.as_bytes(), samples].concat()
 }
 
@@ -124,7 +124,7 @@ fn faults_of_nrrd_files_name_line_and_field() {
     assert!(message(&[("a.vol", b"")]).contains("unknown file ending \"vol\"; known endings are .nrrd, .nhdr, .mha"));
 }
 
-const META: &str = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n\
+pub(super) const META: &str = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n\
     CompressedData = False\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 0.5 2 3\n\
     DimSize = 3 2 2\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
 
@@ -181,7 +181,7 @@ fn faults_of_metaimages_name_line_and_key() {
 }
 
 /// A header with its samples; `one` in one file.
-fn nifti(is_big: bool, changes: &[(usize, &[u8])]) -> Vec<u8> {
+pub(super) fn nifti(is_big: bool, changes: &[(usize, &[u8])]) -> Vec<u8> {
     let mut bytes = vec![0; 352];
     let swapped = |bytes: &[u8]| if is_big { bytes.iter().rev().copied().collect() } else { bytes.to_vec() };
     let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(&swapped(value));
@@ -190,6 +190,7 @@ fn nifti(is_big: bool, changes: &[(usize, &[u8])]) -> Vec<u8> {
         put(40 + 2 * i, &dimension.to_le_bytes());
     }
     put(70, &4_i16.to_le_bytes());
+    put(72, &16_i16.to_le_bytes());
     for (i, distance) in [1.0_f32, 0.5, 2.0, 3.0].into_iter().enumerate() {
         put(76 + 4 * i, &distance.to_le_bytes());
     }
@@ -231,8 +232,9 @@ fn a_nifti_file_is_read_as_scanners_write_it() {
     let rows: Vec<(usize, &[u8])> = rows.iter().map(|(at, bytes)| (*at, bytes.as_slice())).collect();
     assert_eq!(load(&nifti(false, &rows), 0).unwrap().steps(), [4.0 * up, 2.0 * right, 3.0 * front]);
 
-    // Many write none, and mean where samples begin.
+    // Many write none, and mean where samples begin, or the bits of their kind.
     assert_eq!(load(&nifti(false, &[(108, &floats(&[0.0]))]), 0).unwrap(), plain);
+    assert_eq!(load(&nifti(false, &[(72, &[0, 0])]), 0).unwrap(), plain);
     // A header and its samples apart, named by either.
     let mut header = nifti(false, &[(108, &floats(&[0.0]))]);
     let samples = header.split_off(352);
@@ -257,9 +259,18 @@ fn faults_of_nifti_files_name_byte_and_field() {
         ((0, 347_i32.to_le_bytes().to_vec()), "byte 0: it does not begin as NIfTI-1 does"),
         ((344, vec![0; 4]), "byte 344: its magic is not n+1"),
         ((40, short(2)), "byte 40: dim[0] is 2"),
-        ((44, short(-2)), "byte 42: dim asks for 3 x 0 x 2 samples"),
+        ((44, short(-2)), "byte 44: dim[2] is -2; no axis has fewer samples than 0"),
+        ((44, short(0)), "byte 42: dim asks for 3 x 0 x 2 samples"),
+        ((48, short(-1)), "byte 48: dim[4] is -1; no axis"),
         ((42, short(32_767)), "it is cut off"),
         ((70, short(128)), "byte 70: datatype is 128"),
+        ((70, short(16)), "byte 72: bitpix is 16, but a sample of datatype 16 has 32 bits; it is damaged"),
+        ((72, short(8)), "byte 72: bitpix is 8, but a sample of datatype 4 has 16 bits; it is damaged"),
+        ((72, short(-16)), "byte 72: bitpix is -16"),
+        (
+            (252, [vec![1, 0, 0, 0], float(2.0)].concat()),
+            "byte 256: quatern_b, quatern_c and quatern_d have the length 2",
+        ),
         ((108, float(-8.0)), "byte 108: vox_offset is -8"),
         ((108, float(f32::NAN)), "byte 108: vox_offset is NaN"),
         ((108, float(348.0)), "byte 108: vox_offset is 348; samples begin at 352"),
@@ -367,7 +378,7 @@ fn damaged_nanovdb_files_are_refused_within_their_bounds() {
     }
 }
 
-fn gzip(bytes: &[u8]) -> Vec<u8> {
+pub(super) fn gzip(bytes: &[u8]) -> Vec<u8> {
     let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     std::io::Write::write_all(&mut packer, bytes).unwrap();
     packer.finish().unwrap()

@@ -146,9 +146,10 @@ pub fn film<S: Study>(
     Ok(files)
 }
 
-/// Warnings of a paper that were not told before.
+/// Notes on the files of a side and warnings of its paper that were not told before.
 pub fn news<S: Study>(side: &Side<S>, told: &mut Vec<String>) -> Vec<String> {
-    let fresh: Vec<String> = side.paper.warnings().into_iter().filter(|warning| !told.contains(warning)).collect();
+    let all = side.notes.iter().cloned().chain(side.paper.warnings());
+    let fresh: Vec<String> = all.filter(|warning| !told.contains(warning)).collect();
     told.extend(fresh.iter().cloned());
     fresh
 }

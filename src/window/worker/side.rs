@@ -12,6 +12,7 @@ use crate::measure::parameter::Given;
 use crate::measure::picture;
 use crate::measure::study::Study;
 use crate::measure::{Error, Paper, Target, Variant};
+use crate::scene::notes;
 use crate::window::protocol::{PassInfo, SideBuilt, TargetInfo};
 
 /// A paper's method, made.
@@ -19,6 +20,8 @@ pub struct Side<S: Study> {
     /// Parameters that it is made of.
     pub resolved: Resolved<S>,
     scene: S::Scene,
+    /// Notes on what readers passed over in its files, a line each.
+    pub notes: Vec<String>,
     /// The method.
     pub paper: S::Paper,
     shaders: Arc<ShaderLibrary>,
@@ -55,8 +58,10 @@ impl<S: Study> Side<S> {
         label: &str,
     ) -> Result<Self, Error> {
         let Resolved { study, variant, .. } = &resolved;
+        notes::take();
         let started = Instant::now();
         let scene = study.load()?;
+        let notes = notes::take();
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
         study.estimate(&machine.device, &scene, *variant).check(&machine.device, variant.as_str())?;
@@ -66,6 +71,7 @@ impl<S: Study> Side<S> {
         Ok(Side {
             resolved,
             scene,
+            notes,
             paper,
             shaders,
             prefix: format!("{label}/"),

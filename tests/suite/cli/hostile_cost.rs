@@ -212,6 +212,13 @@ fn mosaics_that_promise() {
         let voids = mosaic((8_192, 8_192), &voids);
         refused_of(map, &[("voids.vrt", &voids), (name, bytes)], &["all its samples are void"]);
     }
+    // Many packed files, of each of which a corner is taken.
+    let names: Vec<String> = (0..40).map(|i| format!("{i}.tif")).collect();
+    let corners: String = names.iter().zip(0..).map(|(name, i)| part(name, (2 * i, 0), 2)).collect();
+    let corners = mosaic((82, 2), &(corners + &part("cut.asc", (80, 0), 2)));
+    let files = [("corners.vrt", &corners[..]), cut].into_iter().chain(names.iter().map(|name| (&name[..], &tiff[..])));
+    let parts = ["its packed files unpack to more than 2048 MiB", "COMPRESS=NONE"];
+    refused_of(map, &files.collect::<Vec<_>>(), &parts);
     // A file of voids that many parts are cut from.
     let header = &b"NROWS 2000\nNCOLS 2000\nNBITS 16\n"[..];
     let cuts: String = (0..20_000).map(|i| part("zero.bil", (i % 7_200, i / 7_200), 1)).collect();

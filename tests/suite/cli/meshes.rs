@@ -35,8 +35,8 @@ fn an_obj_with_a_fault_is_refused_with_its_line() {
         ("infinite.obj", "v 0 0 0\nv 0 0 inf\nv 0 1 0\nf 1 2 3\n", &["line 2"]),
         ("words.obj", "v a b c\n", &["line 1"]),
         ("point.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", &["area"]),
-        ("tiny.obj", "v 0 0 0\nv 1e-44 0 0\nv 0 1e-44 0\nf 1 2 3\n", &["scaled"]),
-        ("vast.obj", "v -3e38 0 0\nv 3e38 0 0\nv 0 -3e38 0\nf 1 2 3\n", &["scaled"]),
+        ("tiny.obj", "v 0 0 0\nv 1e-44 0 0\nv 0 1e-44 0\nf 1 2 3\n", &["1e-18", "has to be scaled up"]),
+        ("vast.obj", "v -3e38 0 0\nv 3e38 0 0\nv 0 -3e38 0\nf 1 2 3\n", &["vertex 0", "1e18", "scaled down"]),
     ] {
         refuse(&file(&out, name, text), parts);
     }
@@ -219,6 +219,28 @@ fn processes_share_the_cache_and_a_killed_one_leaves_no_rest() {
             assert_kept(&cache, &format!("killed after {:?}", whole_run * part / 16));
         }
     });
+}
+
+/// Notes of a reader are told each time, also of a file that is large enough for the cache.
+#[test]
+fn what_is_passed_over_is_warned_of() {
+    let out = folder();
+    let path = kept_ball(&out);
+    File::options().append(true).open(&path).unwrap().write_all(&[0; 7]).unwrap();
+    let note =
+        format!("mesh {}: 7 bytes behind the 28560 triangles that its header counts are left out", path.display());
+    let run = |verb: &str| {
+        let program = caustics(verb).arg("--mesh").arg(&path).tiny().inside(out.path());
+        program.env("XDG_CACHE_HOME", out.path()).run().succeeded()
+    };
+    for _ in 0..2 {
+        let told = run("render --image a.png").stderr;
+        assert_eq!(told.matches(&note).count(), 1, "{told}");
+    }
+    assert_eq!(run("render --quiet --image a.png").stderr, "");
+    let record = run(&format!("bench --quiet --json --variant level-map {ONCE}")).json();
+    let warnings = record["runs"][0]["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|warning| *warning == note.as_str()), "{warnings:?}");
 }
 
 /// `--no-cache` leaves the folder alone; without it the second load is the first one's mesh, and the record says so.

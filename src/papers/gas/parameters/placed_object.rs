@@ -9,7 +9,7 @@ use crate::measure::Error;
 use crate::measure::components;
 use crate::measure::parameter::{Shape, Value, one, with_place};
 use crate::papers::gas::model::Object;
-use crate::scene::{MeshOptions, MeshSource};
+use crate::scene::{Mesh, MeshOptions, MeshSource};
 
 /// The grey of an object that names no colour.
 const GREY: Vec3 = Vec3::splat(0.6);
@@ -42,7 +42,7 @@ impl PlacedObject {
     /// The object in the scene.
     ///
     /// # Errors
-    /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates that leave the range of floats.
+    /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates beyond [`Mesh::MOST_COORDINATE`].
     pub fn load(&self, crease_deg: f32) -> Result<Object, Error> {
         let mesh = self.source.load_with(&MeshOptions::to_draw(crease_deg))?;
         let Some(Stand { base_m, yaw_deg, scale, color, opacity }) = self.stand else {
@@ -55,10 +55,14 @@ impl PlacedObject {
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot);
         let placed = mesh.placed(&place);
-        if placed.positions.iter().all(|p| p.is_finite()) {
+        if placed.is_within_reach() {
             return Ok(Object { opacity, ..Object::new(placed, color) });
         }
-        Err(Error::Input(format!("`object` {}: its coordinates are beyond 3.4e38 metres; scale it down", self.text())))
+        let most_m = Mesh::MOST_COORDINATE;
+        Err(Error::Input(format!(
+            "`object` {}: its coordinates are beyond {most_m:e} metres; scale it down",
+            self.text()
+        )))
     }
 }
 
@@ -151,6 +155,7 @@ mod tests {
         assert_eq!((object.color, object.opacity), (Vec3::X, 0.25));
         let own = parse("teapot").unwrap().load(30.0).unwrap();
         assert_eq!(own.mesh.bounds(), MeshSource::Teapot.load().unwrap().bounds());
-        assert!(parse("box@0,0,0,0,3e38").unwrap().load(30.0).is_err());
+        assert!(parse("box@0,0,0,0,5e17").unwrap().load(30.0).is_ok());
+        assert!(parse("box@0,0,0,0,2e18").unwrap().load(30.0).is_err());
     }
 }

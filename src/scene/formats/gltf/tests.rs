@@ -1,5 +1,6 @@
 use super::*;
-use crate::scene::Mesh;
+use crate::scene::loading::Conditions;
+use crate::scene::{Mesh, MeshOptions};
 
 fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
     super::parse(bytes, directory, false)?.into_mesh(180.0)
@@ -64,6 +65,7 @@ fn binary(json: &str, chunk: &[u8]) -> Vec<u8> {
 
 const STRIP: &str = r#"{"attributes":{"POSITION":0},"indices":2,"mode":5}"#;
 const FAN: &str = r#"{"attributes":{"POSITION":0},"mode":6}"#;
+const POINTS: &str = r#"{"attributes":{"POSITION":0},"mode":0}"#;
 const LIST: &str = r#"{"attributes":{"POSITION":0},"indices":1}"#;
 
 #[test]
@@ -72,10 +74,9 @@ fn lists_strips_and_fans_are_triangles_of_the_right_orientation() {
     assert_eq!(embedded(NODE, FAN).unwrap().indices, [1, 2, 0, 2, 3, 0]);
     assert_eq!(embedded(NODE, STRIP).unwrap().indices, [0, 1, 2, 1, 3, 2]);
     assert_eq!(embedded(NODE, FAN).unwrap().normals, [Vec3::Z; 4]);
-    let points = r#"{"attributes":{"POSITION":0},"mode":0}"#;
-    let mixed = embedded(NODE, &format!("{points},{FAN},{LIST}")).unwrap();
+    let mixed = embedded(NODE, &format!("{POINTS},{FAN},{LIST}")).unwrap();
     assert_eq!((mixed.triangle_count(), mixed.positions.len()), (4, 8));
-    assert!(embedded(NODE, points).unwrap_err().reason.contains("no triangles"));
+    assert!(embedded(NODE, POINTS).unwrap_err().reason.contains("no triangles"));
 }
 
 #[test]
@@ -104,6 +105,129 @@ fn node_transforms_are_applied_down_the_tree() {
     assert_eq!(mesh.bounds().max, Vec3::new(12.0, 2.0, 0.0));
     assert_eq!(mesh.positions[1], Vec3::new(12.0, 0.0, 0.0));
     assert_eq!(mesh.normals, [Vec3::Z; 8]);
+}
+
+#[test]
+fn rotations_are_of_unit_length_and_matrices_are_affine() {
+    let node = |fields: &str| embedded(&format!(r#"[{{"children":[1]}},{{"mesh":0,{fields}}}]"#), LIST);
+    // A quarter turn about z, by numbers of two digits, of which the squares' sum is 1.0082.
+    let turned = node(r#""rotation":[0,0,0.71,0.71]"#).unwrap();
+    assert!((turned.positions[1] - Vec3::Y).length() < 1e-6, "{}", turned.positions[1]);
+    assert_eq!(node(r#""matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]"#).unwrap().positions[1], Vec3::new(5.0, 1.0, 0.0));
+    for (fields, part) in [
+        (r#""rotation":[0,0,0,2]"#, "node 1: its rotation has the length 2; it has to be 1"),
+        (r#""rotation":[0,0,0,0]"#, "node 1: its rotation has the length 0"),
+        (r#""rotation":[1e30,0,0,1]"#, "node 1: its rotation has the length inf"),
+        (r#""matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]"#, "node 1: the last row of its matrix is 0 0 0 2"),
+        (r#""matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]"#, "node 1: the last row of its matrix is 0.5 0 0 1"),
+    ] {
+        let fault = node(fields).unwrap_err().to_string();
+        assert!(fault.starts_with(part), "{fields}: {fault}");
+    }
+}
+
+#[test]
+fn versions_and_extensions_that_are_not_read_are_refused() {
+    let of = |asset: &str, more: &str| {
+        let json = document(NODE, LIST, None).replacen(r#""asset":{"version":"2.0"}"#, &format!("{asset}{more}"), 1);
+        parse(&binary(&json, &square_bytes()), Path::new("")).map_err(|fault| fault.to_string())
+    };
+    let plain = r#""asset":{"version":"2.0"}"#;
+    for (asset, part) in [
+        (r#""asset":{"version":"2.0"}"#, None),
+        (r#""asset":{"version":"2.1","minVersion":"2.0"}"#, None),
+        (
+            r#""asset":{"version":"2.1","minVersion":"2.1"}"#,
+            Some("asset: its minVersion is \"2.1\", and glTF 2.0 is read"),
+        ),
+        (r#""asset":{"version":"2.0","minVersion":"x"}"#, Some("asset: its minVersion is \"x\"")),
+        (
+            r#""asset":{"version":"3.0"}"#,
+            Some("asset: its version is \"3.0\", and glTF 2.0 is read; export it as that"),
+        ),
+    ] {
+        match (of(asset, ""), part) {
+            (Ok(_), None) => {}
+            (Err(fault), Some(part)) => assert!(fault.starts_with(part), "{fault}"),
+            (read, _) => panic!("{asset}: {read:?}"),
+        }
+    }
+    let required = |name: &str| of(plain, &format!(r#","extensionsRequired":["KHR_materials_unlit","{name}"]"#));
+    assert!(required("KHR_texture_transform").is_ok());
+    let fault = required("EXT_meshopt_compression").unwrap_err();
+    assert_eq!(fault, "it requires the extension \"EXT_meshopt_compression\", which is not read; export it without");
+}
+
+#[test]
+fn what_is_passed_over_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    let told = |nodes: &str, mesh: &str, more: &str, bytes: &[u8]| {
+        let json = document(nodes, LIST, None).replacen(r#""meshes":[{"#, &format!(r#"{more}"meshes":[{{{mesh}"#), 1);
+        std::fs::write(&path, binary(&json, bytes)).unwrap();
+        notes::take();
+        crate::scene::MeshSource::File(path.clone()).load().unwrap();
+        notes::take()
+    };
+    let skin = r#""skins":[{"joints":[0]}],"#;
+    let instanced = r#""extensionsUsed":["KHR_materials_unlit","EXT_mesh_gpu_instancing"],"#;
+    let twice = r#"[{"mesh":0,"children":[1]},{"mesh":0,"skin":0}]"#;
+    let bent = r#"[{"mesh":0,"weights":[0,0.5]}]"#;
+    for (nodes, mesh, more, part) in [
+        (twice, "", skin, "the skins of 1 of its 2 meshes are left out: they keep the shape that is stored"),
+        (
+            NODE,
+            r#""weights":[0,1],"#,
+            "",
+            "the morph targets of 1 of its 1 meshes are left out, whose weights are not 0",
+        ),
+        (bent, r#""weights":[0,0],"#, "", "the morph targets of 1 of its 1 meshes"),
+        (
+            NODE,
+            "",
+            instanced,
+            "its extension EXT_mesh_gpu_instancing is not read: a mesh of many instances is placed once",
+        ),
+    ] {
+        let notes = told(nodes, mesh, more, &square_bytes());
+        assert!(notes.len() == 1 && notes[0].contains(&format!("a.glb: {part}")), "{part}: {notes:?}");
+    }
+    let json = document(NODE, &format!("{POINTS},{LIST}"), None);
+    std::fs::write(&path, binary(&json, &square_bytes())).unwrap();
+    crate::scene::MeshSource::File(path.clone()).load().unwrap();
+    assert!(notes::take()[0].ends_with("1 primitives of points and lines are left out"));
+    let whole = binary(&document(NODE, LIST, None), &square_bytes());
+    std::fs::write(&path, [&whole[..], b"more"].concat()).unwrap();
+    crate::scene::MeshSource::File(path.clone()).load().unwrap();
+    assert!(
+        notes::take()[0].ends_with(&format!("4 bytes behind the {} that its header states are left out", whole.len()))
+    );
+    // What changes nothing is no news.
+    assert_eq!(told(r#"[{"mesh":0,"weights":[0,0]}]"#, r#""weights":[0,1],"#, skin, &square_bytes()), [""; 0]);
+    // A large one is not kept, so that the next load tells it again.
+    let large = [square_bytes(), vec![0; 1 << 21]].concat();
+    let cache = tempfile::tempdir().unwrap();
+    let conditions = Conditions { cache: Some(cache.path().to_owned()), ..Conditions::plain() };
+    for (mesh, kept) in [(r#""weights":[1],"#, 0), ("", 1)] {
+        let notes = told(NODE, mesh, "", &large);
+        let load = || crate::scene::MeshSource::File(path.clone()).load_under(&MeshOptions::default(), &conditions);
+        load().unwrap();
+        assert_eq!(notes::take(), notes);
+        assert_eq!(std::fs::read_dir(cache.path()).unwrap().count(), kept, "{mesh}");
+    }
+}
+
+/// Points in any number are no scene either.
+#[test]
+fn small_files_place_no_vast_number_of_points() {
+    let list = |item: &str, count: usize| vec![item; count].join(",");
+    let roots = (0..10_000).map(|node| node.to_string()).collect::<Vec<_>>().join(",");
+    let json = document("[NODES]", LIST, None)
+        .replacen("NODES", &list(r#"{"mesh":0}"#, 10_000), 1)
+        .replacen(r#""nodes":[0]"#, &format!(r#""nodes":[{roots}]"#), 1)
+        .replacen(r#""primitives":["#, &format!(r#""primitives":[{},"#, list(POINTS, 10_000)), 1);
+    let fault = parse(&binary(&json, &square_bytes()), Path::new("")).unwrap_err().to_string();
+    assert!(fault.contains("1048576 primitives"), "{fault}");
 }
 
 #[test]

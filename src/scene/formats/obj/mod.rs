@@ -12,15 +12,16 @@ use super::stream::{Lines, Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::loading::{LoadParts, timed};
 use crate::scene::mesh::Parts;
+use crate::scene::notes;
 use crate::scene::numbering::Numbering;
 use crate::scene::polygon::{Arities, PolygonMesh};
 use crate::scene::tags::{Runs, Tags};
 
-/// Reads the polygons of a Wavefront OBJ file; lines and points are left out, and so are objects, groups, materials and
-/// colours unless they are asked for.
+/// Reads the polygons of a Wavefront OBJ file; points, lines, curves and free-form surfaces are left out, which a note says, and so
+/// are objects, groups, materials and colours unless they are asked for.
 ///
 /// Faces may name vertices that follow, or count back from the last with negative numbers. Where
-/// only some corners of the file name a normal (or a texture coordinate), none of them counts.
+/// only some corners of the file name a normal (or a texture coordinate), none of them counts, which a note says.
 /// Each combination of position, texture coordinate and normal is a vertex, in the order of first use.
 pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     let mut start = Vec::new();
@@ -67,6 +68,7 @@ struct Joined {
     runs: Runs,
     faces: usize,
     has_faces: bool,
+    has_others: bool,
     /// More of any kind than the file can hold.
     beyond: u64,
 }
@@ -87,6 +89,7 @@ impl Joined {
             runs: Runs::default(),
             faces: 0,
             has_faces: false,
+            has_others: false,
             beyond: size_bytes.min(u64::from(ABSENT) - 1),
         }
     }
@@ -132,6 +135,7 @@ impl Joined {
         self.colors.extend(piece.colors);
         let count = piece.corners[0].len();
         self.has_faces |= count > 0;
+        self.has_others |= piece.has_others;
         self.arities.append(piece.arities, count, self.corners.len());
         for corner in 0..count {
             let mut key = [ABSENT; 3];
@@ -159,6 +163,9 @@ impl Joined {
         if !self.has_faces {
             return Err(Fault::new(Place::Whole, "it has no faces"));
         }
+        if self.has_others {
+            notes::add("its points, lines, curves and free-form surfaces are left out");
+        }
         let Joined {
             positions,
             texture_coordinates,
@@ -172,6 +179,14 @@ impl Joined {
             ..
         } = self;
         let vertices = vertices.into_keys();
+        for (kind, is_partial) in (1..).zip(are_partial) {
+            if is_partial && vertices.iter().any(|key| key[kind] != ABSENT) {
+                let kind = KINDS[kind];
+                notes::add(format!(
+                    "some corners of its faces have no {kind}, so that those of the others are left out"
+                ));
+            }
+        }
         let gathered = |kind: usize| vertices.iter().map(move |key| key[kind] as usize);
         let positions: Vec<Vec3> = gathered(0).map(|at| positions[at]).collect();
         let texture_coordinates =
@@ -239,6 +254,30 @@ mod tests {
         let partial = square_with(&format!("vn 1 0 0\n{attributes}f 1/1/1 2//1 3/3")).unwrap();
         assert_eq!(partial.normals, [Vec3::Z; 3]);
         assert!(partial.texture_coordinates.is_empty());
+    }
+
+    #[test]
+    fn what_is_left_out_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        let told = |rest: &str| {
+            std::fs::write(&path, format!("{SQUARE}vn 0 0 1\nvt 0 0\n{rest}\n")).unwrap();
+            notes::take();
+            crate::scene::MeshSource::File(path.clone()).load().unwrap();
+            notes::take().join(" ")
+        };
+        for rest in ["f 1 2 3 4", "f 1/1/1 2/1/1 3/1/1", "o a\ng b\ns off\nmtllib c\nusemtl d\nvp 1\nf 1 2 3"] {
+            assert_eq!(told(rest), "", "{rest}");
+        }
+        for others in ["l 1 2", "p 1", "f 1 2", "surf 0 1 0 1 1 2 3 4", "curv 0 1 1 2"] {
+            let told = told(&format!("f 1 2 3\n{others}"));
+            assert!(told.ends_with("a.obj: its points, lines, curves and free-form surfaces are left out"), "{told}");
+        }
+        let normals = told("f 1//1 2//1 3//1\nf 1 3 4");
+        assert!(
+            normals.ends_with("some corners of its faces have no normals, so that those of the others are left out")
+        );
+        assert!(told("f 1/1/1 2/1/1 3//1").contains("have no texture coordinates, so"));
     }
 
     #[test]

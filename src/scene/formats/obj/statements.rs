@@ -36,6 +36,8 @@ pub struct Piece {
     pub changes: Vec<(usize, Level, String)>,
     /// Of each position, where colours are wanted.
     pub colors: Vec<Vec3>,
+    /// It has points, lines, curves or free-form surfaces.
+    pub has_others: bool,
     keeps_tags: bool,
     /// Lines of the file.
     pub lines: usize,
@@ -177,6 +179,7 @@ impl Piece {
             "f" => return self.add_face(line, tokens),
             "o" if self.keeps_tags => self.change(Level::Object, &mut tokens),
             "g" if self.keeps_tags => self.change(Level::Group, &mut tokens),
+            "p" | "l" | "curv" | "curv2" | "surf" => self.has_others = true,
             "usemtl" if self.keeps_tags => self.change(Level::Material, &mut tokens),
             _ => {}
         }
@@ -218,6 +221,7 @@ impl Piece {
         let count = self.corners[0].len() - first;
         if count < 3 {
             // A point or a line.
+            self.has_others = true;
             self.corners.iter_mut().for_each(|named| named.truncate(first));
         } else {
             self.faces += 1;

@@ -4,9 +4,10 @@ use ply_rs_bw::ply::{PropertyType, ScalarType};
 use rayon::prelude::*;
 
 use super::header::{Element, Header, scalar_bytes};
-use super::{Carried, Purpose, Vertex, add_face, check_faces};
+use super::{Carried, Purpose, Strip, Vertex, add_face, check_faces};
 use crate::scene::error::{Fault, Place};
 use crate::scene::formats::stream::{Stop, Stream};
+use crate::scene::notes;
 use crate::scene::polygon::{Arities, PolygonMesh};
 
 /// Bytes that are read, and then taken apart, at once.
@@ -25,8 +26,13 @@ pub(super) fn read<const BIG: bool>(
         match (element.purpose, element.stride_bytes()) {
             (Purpose::Vertices, Some(stride)) => fixed_vertices::<BIG>(element, stride, &mut window, mesh)?,
             (Purpose::Faces, _) => faces::<BIG>(element, &mut window, mesh)?,
+            (Purpose::Strips, _) => strips::<BIG>(element, &mut window, mesh)?,
             _ => others::<BIG>(element, &mut window, mesh)?,
         }
+    }
+    let more = (window.bytes.len() - window.at) as u64 + window.stream.left_bytes();
+    if more > 0 {
+        notes::add(format!("{more} bytes behind the elements that its header counts are left out"));
     }
     Ok(())
 }
@@ -135,6 +141,12 @@ fn faces<const BIG: bool>(element: &Element, window: &mut Window<'_, '_>, mesh: 
     Ok(())
 }
 
+/// Strips of triangles, one by one: files have few, and long ones.
+fn strips<const BIG: bool>(element: &Element, window: &mut Window<'_, '_>, mesh: &mut PolygonMesh) -> Result<(), Stop> {
+    check_faces(element)?;
+    (0..element.count).try_for_each(|_| one::<BIG>(element, None, window, mesh))
+}
+
 /// The layout of faces, if each has three corners.
 struct TriangleFaces<'e> {
     stride: usize,
@@ -204,7 +216,11 @@ fn one<const BIG: bool>(
         if let Some(slot) = property.slot {
             vertex[slot] = float::<BIG>(scalar, bytes);
         } else if property.is_corners {
-            add_face(bytes.chunks_exact(scalar_bytes(scalar)).map(|bytes| index::<BIG>(scalar, bytes)), mesh);
+            let corners = bytes.chunks_exact(scalar_bytes(scalar)).map(|bytes| index::<BIG>(scalar, bytes));
+            match element.purpose {
+                Purpose::Strips => Strip::add_all(corners, mesh),
+                _ => add_face(corners, mesh),
+            }
         }
     }
     if let Some(carried) = carried {
@@ -241,15 +257,15 @@ fn float<const BIG: bool>(scalar: &ScalarType, bytes: &[u8]) -> f32 {
     }
 }
 
-/// A number as a vertex number or a count; a negative one, and one that is no integer, is out of range in any mesh.
+/// A number as a vertex number or a count; a negative one, and one that is no integer, is out of range in any mesh, and -1 is
+/// [`END_OF_STRIP`](super::END_OF_STRIP).
 fn index<const BIG: bool>(scalar: &ScalarType, bytes: &[u8]) -> u32 {
     match scalar {
         ScalarType::UChar => bytes[0].into(),
         ScalarType::UShort => half_word::<BIG>(bytes).into(),
-        ScalarType::UInt => word::<BIG>(bytes),
-        ScalarType::Char => u32::try_from(bytes[0] as i8).unwrap_or(u32::MAX),
-        ScalarType::Short => u32::try_from(half_word::<BIG>(bytes) as i16).unwrap_or(u32::MAX),
-        ScalarType::Int => u32::try_from(word::<BIG>(bytes) as i32).unwrap_or(u32::MAX),
+        ScalarType::UInt | ScalarType::Int => word::<BIG>(bytes),
+        ScalarType::Char => i32::from(bytes[0] as i8) as u32,
+        ScalarType::Short => i32::from(half_word::<BIG>(bytes) as i16) as u32,
         ScalarType::Float | ScalarType::Double => u32::MAX,
     }
 }

@@ -72,13 +72,14 @@ impl Element {
         let purpose = match def.name.as_str() {
             "vertex" => Purpose::Vertices,
             "face" => Purpose::Faces,
+            "tristrips" => Purpose::Strips,
             _ => Purpose::Nothing,
         };
         let property = |(name, property): (&String, &ply::PropertyDef)| Property {
             name: name.clone(),
             kind: property.data_type.clone(),
             slot: slot(name, &property.data_type).filter(|_| purpose == Purpose::Vertices),
-            is_corners: purpose == Purpose::Faces && CORNER_LISTS.contains(&name.as_str()),
+            is_corners: matches!(purpose, Purpose::Faces | Purpose::Strips) && CORNER_LISTS.contains(&name.as_str()),
         };
         Element {
             name: def.name.clone(),

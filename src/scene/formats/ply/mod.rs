@@ -17,11 +17,15 @@ use crate::scene::polygon::{Arities, PolygonMesh};
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// Reads the `vertex` and `face` elements of a PLY file in any of its three encodings.
+/// The number that ends a strip of triangles, -1, among vertex numbers.
+const END_OF_STRIP: u32 = u32::MAX;
+
+/// Reads the `vertex`, `face` and `tristrips` elements of a PLY file in any of its three encodings.
 ///
 /// Vertices may carry normals (`nx`, `ny`, `nz`) and texture coordinates (`s`, `t` or `u`, `v` or
 /// `texture_u`, `texture_v`), and colours (`red`, `green`, `blue`), which count where they are asked for; all else
-/// is left out.
+/// is left out. Strips are lists of vertices, parted by -1, of which each with the two before it is a triangle. A note says where
+/// more follows than the header counts.
 pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     let header = Header::read(stream)?;
     let mut mesh = PolygonMesh::default();
@@ -42,6 +46,7 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
 enum Purpose {
     Vertices,
     Faces,
+    Strips,
     Nothing,
 }
 
@@ -140,13 +145,14 @@ fn full_color(element: &Element) -> Option<f32> {
 /// No list of corners, or one of another kind.
 fn check_faces(element: &Element) -> Result<(), Fault> {
     use ScalarType::{Double, Float};
+    let name = if element.purpose == Purpose::Strips { "tristrips" } else { "faces" };
     match element.properties.iter().find(|property| property.is_corners).map(|property| &property.kind) {
         None => {
-            let reason = "its faces have no property vertex_indices or vertex_index";
+            let reason = format!("its {name} have no property vertex_indices or vertex_index");
             Err(Fault::new(Place::Whole, reason))
         }
         Some(PropertyType::Scalar(_) | PropertyType::List(_, Float | Double)) => {
-            let reason = "the property vertex_indices of its faces has a type that cannot be used";
+            let reason = format!("the property vertex_indices of its {name} has a type that cannot be used");
             Err(Fault::new(Place::Whole, reason))
         }
         Some(PropertyType::List(..)) => Ok(()),
@@ -159,11 +165,46 @@ fn add_face(corners: impl ExactSizeIterator<Item = u32>, mesh: &mut PolygonMesh)
     mesh.corners.extend(corners);
 }
 
+/// A strip of triangles, as far as it is read.
+#[derive(Default)]
+struct Strip {
+    /// Its last two corners.
+    last: [u32; 2],
+    /// Number of its corners.
+    length: usize,
+}
+
+impl Strip {
+    /// Adds the triangles of a list of strips.
+    fn add_all(corners: impl Iterator<Item = u32>, mesh: &mut PolygonMesh) {
+        let mut strip = Strip::default();
+        corners.for_each(|corner| strip.add(corner, mesh));
+    }
+
+    /// Adds the triangle of the next corner, every other of which turns about, unless two of its corners are one: so strips
+    /// go around a corner.
+    fn add(&mut self, corner: u32, mesh: &mut PolygonMesh) {
+        if corner == END_OF_STRIP {
+            *self = Strip::default();
+            return;
+        }
+        let [a, b] = self.last;
+        if self.length >= 2 && a != b && b != corner && corner != a {
+            let triangle = if self.length.is_multiple_of(2) { [a, b, corner] } else { [b, a, corner] };
+            mesh.arities.push(3, mesh.corners.len());
+            mesh.corners.extend(triangle);
+        }
+        self.last = [b, corner];
+        self.length += 1;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Mesh;
     use crate::scene::formats::tests::read_with;
+    use crate::scene::notes;
 
     fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         read_with(read, bytes)
@@ -223,6 +264,62 @@ mod tests {
         let mesh = parse(text.as_bytes()).unwrap();
         assert_eq!(mesh.normals, [Vec3::Y, Vec3::Y, Vec3::Z]);
         assert_eq!(mesh.texture_coordinates[0], Vec2::new(0.25, 0.5));
+    }
+
+    #[test]
+    fn strips_are_triangles_of_one_orientation() {
+        // A square, and after the end of its strip another, around a corner that is named twice.
+        let strips = [0, 1, 3, 2, -1, 4, 5, 4, 6, 7];
+        let expected = [[0, 1, 3], [3, 1, 2], [4, 5, 6], [4, 6, 7]].as_flattened().to_vec();
+        let places = [[0, 0], [1, 0], [1, 1], [0, 1], [5, 0], [6, 0], [6, 1], [5, 1]];
+        let header = |format: &str, kind: &str| {
+            format!(
+                "ply\nformat {format} 1.0\nelement vertex 8\nproperty uchar x\nproperty uchar y\nproperty uchar z\n\
+                 element tristrips 1\nproperty list uchar {kind} vertex_indices\nend_header\n"
+            )
+        };
+        let lines = places.map(|[x, y]| format!("{x} {y} 0\n")).concat();
+        let list = strips.map(|index: i32| format!(" {index}")).concat();
+        let text = |list: &str| parse(format!("{}{lines}{list}\n", header("ascii", "int")).as_bytes());
+        let mesh = text(&format!("{}{list}", strips.len())).unwrap();
+        assert_eq!((&mesh.indices, &mesh.normals), (&expected, &vec![Vec3::Z; 8]));
+        let bytes = |format: &str, kind: &str, number: fn(i32) -> Vec<u8>| {
+            let mut bytes = header(format, kind).into_bytes();
+            bytes.extend(places.iter().flat_map(|[x, y]| [*x, *y, 0]));
+            bytes.push(strips.len() as u8);
+            bytes.extend(strips.into_iter().flat_map(number));
+            parse(&bytes).unwrap()
+        };
+        assert_eq!(bytes("binary_little_endian", "int", |index| index.to_le_bytes().to_vec()), mesh);
+        assert_eq!(bytes("binary_big_endian", "short", |index| (index as i16).to_be_bytes().to_vec()), mesh);
+        assert_eq!(bytes("binary_little_endian", "char", |index| vec![index as u8]), mesh);
+        for index in [-2, -5, 8] {
+            assert_eq!(text(&format!("4 0 1 2 {index}")).unwrap_err().place, Place::Face(1));
+        }
+        let named = header("ascii", "float") + &lines + "3 0 1 2\n";
+        assert!(parse(named.as_bytes()).unwrap_err().reason.contains("of its tristrips has a type"));
+    }
+
+    #[test]
+    fn what_follows_the_elements_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ply");
+        let told = |bytes: Vec<u8>| {
+            std::fs::write(&path, bytes).unwrap();
+            notes::take();
+            assert_eq!(crate::scene::MeshSource::File(path.clone()).load().unwrap().triangle_count(), 2);
+            notes::take().join(" ")
+        };
+        let body = "0 0 0 7\n1 0 0 7\n1 1 0 7\n0 1 0 7\n4 0 1 2 3\n";
+        let whole = binary("binary_little_endian", little);
+        assert_eq!([told(ascii(body)), told(ascii(&format!("{body} \n\n"))), told(whole.clone())], [""; 3]);
+        let lines = told(ascii(&format!("{body}3 0 1 2\n")));
+        assert!(lines.contains("a.ply: lines behind the elements that its header counts are left out"), "{lines}");
+        for count in [1, 9_000_000] {
+            let bytes = told([whole.clone(), vec![0; count]].concat());
+            assert!(bytes.contains(&format!("a.ply: {count} bytes behind the elements")), "{bytes}");
+            assert!(!told([ascii(body), vec![b'x'; count]].concat()).is_empty());
+        }
     }
 
     #[test]

@@ -4,9 +4,10 @@ use ply_rs_bw::ply::{PropertyType, ScalarType};
 use rayon::prelude::*;
 
 use super::header::{Element, Header};
-use super::{Carried, Purpose, Vertex, check_faces};
+use super::{Carried, END_OF_STRIP, Purpose, Strip, Vertex, check_faces};
 use crate::scene::error::{Fault, Place};
 use crate::scene::formats::stream::{Lines, Stop, Stream};
+use crate::scene::notes;
 use crate::scene::polygon::PolygonMesh;
 
 /// Reads all elements into `mesh`.
@@ -15,14 +16,14 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
     for element in &header.elements {
         match element.purpose {
             Purpose::Vertices => carried = Some(Carried::by(element, stream.keeps_tags)?),
-            Purpose::Faces => check_faces(element)?,
+            Purpose::Faces | Purpose::Strips => check_faces(element)?,
             Purpose::Nothing => {}
         }
     }
     let (elements, first_line) = (&header.elements, header.lines + 1);
     let mut lines = Lines::new(stream, header.payload, |_| true);
     // Lines of elements that were read.
-    let mut done = 0;
+    let (mut done, mut has_more) = (0, false);
     let all: usize = elements.iter().map(|element| element.count).sum();
     while done < all {
         let pieces = lines.next()?;
@@ -38,6 +39,7 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
         for piece in parsed {
             let piece = piece.map_err(|(line, reason)| Fault::new(Place::Line(first_line + line), reason))?;
             done += piece.lines;
+            has_more |= piece.has_more;
             let PolygonMesh { positions, normals, texture_coordinates, corners, arities, tags } = piece.mesh;
             mesh.positions.extend(positions);
             mesh.normals.extend(normals);
@@ -47,6 +49,10 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
             mesh.corners.extend(corners);
         }
     }
+    has_more |= !lines.rest().trim_ascii().is_empty();
+    if has_more || stream.left_bytes() > 0 {
+        notes::add("lines behind the elements that its header counts are left out");
+    }
     Ok(())
 }
 
@@ -54,7 +60,10 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
 #[derive(Default)]
 struct Piece {
     mesh: PolygonMesh,
+    /// Lines of elements.
     lines: usize,
+    /// Something follows the last element.
+    has_more: bool,
 }
 
 impl Piece {
@@ -72,7 +81,10 @@ impl Piece {
         let (mut element, mut left) = (None, 0);
         while at < text.len() {
             while left == 0 {
-                let Some(next) = kinds.next() else { return Ok(piece) };
+                let Some(next) = kinds.next() else {
+                    piece.has_more = !text[at..].trim_ascii().is_empty();
+                    return Ok(piece);
+                };
                 let passed = skipped.min(next.count);
                 skipped -= passed;
                 (element, left) = (Some(next), next.count - passed);
@@ -107,17 +119,20 @@ impl Piece {
                 PropertyType::List(..) => {
                     let count: usize = token.parse().map_err(|_| unreadable(token))?;
                     let first = self.mesh.corners.len();
+                    let mut strip = Strip::default();
                     for found in 0..count {
                         let Some(token) = tokens.next() else {
                             return Err(format!("expected {count} list elements, but found only {found}"));
                         };
                         if property.is_corners {
-                            let index: i64 = token.parse().map_err(|_| unreadable(token))?;
-                            // A negative number is out of range in any mesh.
-                            self.mesh.corners.push(u32::try_from(index).unwrap_or(u32::MAX));
+                            let corner = index(token)?;
+                            match element.purpose {
+                                Purpose::Strips => strip.add(corner, &mut self.mesh),
+                                _ => self.mesh.corners.push(corner),
+                            }
                         }
                     }
-                    if property.is_corners {
+                    if property.is_corners && element.purpose == Purpose::Faces {
                         self.mesh.arities.push(count as u32, first);
                     }
                 }
@@ -136,6 +151,12 @@ fn float(scalar: &ScalarType, token: &str) -> Result<f32, String> {
         ScalarType::Float => token.parse().map_err(|_| unreadable(token)),
         _ => token.parse::<f64>().map(|number| number as f32).map_err(|_| unreadable(token)),
     }
+}
+
+/// The number of a vertex; any other negative number is out of range in any mesh.
+fn index(token: &str) -> Result<u32, String> {
+    let index: i64 = token.parse().map_err(|_| unreadable(token))?;
+    Ok(if index == -1 { END_OF_STRIP } else { u32::try_from(index).unwrap_or(END_OF_STRIP - 1).min(END_OF_STRIP - 1) })
 }
 
 fn unreadable(token: &str) -> String {

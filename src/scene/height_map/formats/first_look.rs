@@ -2,7 +2,7 @@
 
 use super::geotiff::Picture;
 use super::geotiff_check::check_samples;
-use super::{BY_ENDING, PNG_MAGIC, ending, is_tiff, magic, malformed, png};
+use super::{Format, PNG_MAGIC, ending, is_tiff, magic, malformed, png};
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::Placement;
 use crate::scene::height_map::{HeightMap, MapOptions, Samples};
@@ -22,7 +22,7 @@ enum Packed {
 
 /// A TIFF or a PNG by its content, and its size in bytes; none of a file that has its reader by its ending.
 fn open(path: &Path) -> Result<Option<(Packed, u64)>, Error> {
-    if BY_ENDING.contains(&ending(path).as_str()) {
+    if Format::of(&ending(path)) != Format::ByContent {
         return Ok(None);
     }
     let (mut file, size_bytes) = file::open(path, Asset::HeightMap)?;
@@ -37,10 +37,18 @@ fn open(path: &Path) -> Result<Option<(Packed, u64)>, Error> {
     Ok(Some((packed, size_bytes)))
 }
 
-/// Bytes that are held at most while the map of a packed file is made, by its head; 0 of another file, which is no smaller than
-/// its samples.
-pub(super) fn most_bytes(path: &Path, options: MapOptions) -> Result<u64, Error> {
-    let most = |packed: Packed, size_bytes: u64| -> Result<u64, Fault> {
+/// Bytes of a packed file's samples.
+#[derive(Default)]
+pub(super) struct Unpacked {
+    /// Of all of them, unpacked.
+    pub(super) raw_bytes: u64,
+    /// That are held at most while their map is made.
+    pub(super) most_bytes: u64,
+}
+
+/// Sizes of a packed file by its head; 0 of another file, which is no smaller than its samples.
+pub(super) fn unpacked(path: &Path, options: MapOptions) -> Result<Unpacked, Error> {
+    let sizes = |packed: Packed, size_bytes: u64| -> Result<Unpacked, Fault> {
         let ((width, height), raw_bytes) = match packed {
             Packed::Tiff(input) => {
                 let picture = Picture::open(size_bytes, input, options)?;
@@ -48,11 +56,11 @@ pub(super) fn most_bytes(path: &Path, options: MapOptions) -> Result<u64, Error>
             }
             Packed::Png(input) => png::size(size_bytes, input)?,
         };
-        Ok(raw_bytes + KEPT_BYTES * u64::from(width) * u64::from(height))
+        Ok(Unpacked { raw_bytes, most_bytes: raw_bytes + KEPT_BYTES * u64::from(width) * u64::from(height) })
     };
     match open(path)? {
-        Some((packed, size_bytes)) => most(packed, size_bytes).map_err(|fault| malformed(path, fault)),
-        None => Ok(0),
+        Some((packed, size_bytes)) => sizes(packed, size_bytes).map_err(|fault| malformed(path, fault)),
+        None => Ok(Unpacked::default()),
     }
 }
 

@@ -1,7 +1,7 @@
-use super::check_compressed;
 use super::geotiff_check::check_samples;
 use super::placement::{MapCoordinates, Unit};
 use super::stored::Stored;
+use super::{check_compressed, check_unit};
 use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
@@ -181,7 +181,8 @@ impl<R: Read + Seek> Tags<'_, R> {
             let reason = "it gives heights a scale or an offset; write plain metres with gdal_translate -unscale";
             return Err(fault("GDAL_METADATA", reason));
         }
-        Ok(())
+        let unit = metadata.split_once("role=\"unittype\">").and_then(|(_, rest)| rest.split('<').next());
+        check_unit(unit.unwrap_or_default()).map_err(|reason| fault("GDAL_METADATA", reason))
     }
 
     /// Places of the samples of a picture of so many columns and rows, and their unit.
@@ -242,7 +243,13 @@ impl<R: Read + Seek> Tags<'_, R> {
             }
             _ => None,
         };
-        Ok(Keys { raster_type: short(1_025), unit })
+        match short(4_099) {
+            None | Some(0 | 9_001 | 32_767) => Ok(Keys { raster_type: short(1_025), unit }),
+            Some(9_002 | 9_003) => Err(fault("VerticalUnits", check_unit("feet").err().unwrap_or_default())),
+            Some(other) => {
+                Err(fault("VerticalUnits", format!("the unit {other} of heights is not known; use metres (9001)")))
+            }
+        }
     }
 
     fn text(&mut self, tag: Tag, name: &str) -> Result<Option<String>, Fault> {

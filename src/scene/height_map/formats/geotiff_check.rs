@@ -1,5 +1,6 @@
 //! A first look at the samples of a GeoTIFF that could be far larger than its file. None is kept.
 
+use super::distinct::firsts;
 use super::geotiff::{Picture, fault, foreign};
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
@@ -54,10 +55,10 @@ type NoHeight = (usize, f64);
 fn look_at(samples: &DecodingResult, no_data: Option<f64>, voids: &[f64], seen: &mut Seen) -> Result<(), NoHeight> {
     let mut look = Look { no_data, voids, seen };
     match samples {
-        DecodingResult::U8(values) => look.at(values, f64::from),
-        DecodingResult::I8(values) => look.at(values, f64::from),
-        DecodingResult::U16(values) => look.at(values, f64::from),
-        DecodingResult::I16(values) => look.at(values, f64::from),
+        DecodingResult::U8(values) => look.at_heights(values, f64::from),
+        DecodingResult::I8(values) => look.at_heights(values, f64::from),
+        DecodingResult::U16(values) => look.at_heights(values, f64::from),
+        DecodingResult::I16(values) => look.at_heights(values, f64::from),
         DecodingResult::U32(values) => look.at(values, f64::from),
         DecodingResult::I32(values) => look.at(values, f64::from),
         DecodingResult::U64(values) => look.at(values, |value| value as f64),
@@ -75,23 +76,26 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
+    /// At numbers that are all heights: once one is known the others tell nothing.
+    fn at_heights<T: Copy + PartialEq>(&mut self, values: &[T], number: impl Fn(T) -> f64) -> Result<(), NoHeight> {
+        if self.seen.has_known { Ok(()) } else { self.at(values, number) }
+    }
+
     fn at<T: Copy + PartialEq>(&mut self, values: &[T], number: impl Fn(T) -> f64) -> Result<(), NoHeight> {
+        match firsts(values) {
+            Some(firsts) => firsts.into_iter().try_for_each(|index| self.at_one(index, number(values[index]))),
+            None => (0..).zip(values).try_for_each(|(index, value)| self.at_one(index, number(*value))),
+        }
+    }
+
+    fn at_one(&mut self, index: usize, value: f64) -> Result<(), NoHeight> {
         let Look { no_data, voids, seen } = self;
-        let no_data = *no_data;
-        // What packs best is one number again and again, which is soon seen.
-        let is_one = values.split_first().is_some_and(|(_, rest)| *rest == values[..rest.len()]);
-        let looked_at = if is_one { 1 } else { values.len() };
-        for (index, value) in values.iter().take(looked_at).map(|&value| number(value)).enumerate() {
-            if !is_height(value) {
-                if is_void(value, no_data) {
-                    continue;
-                }
-                return Err((index, value));
-            }
-            if !seen.has_known && !is_void(value, no_data) {
-                seen.has_height = true;
-                seen.has_known = !voids.iter().any(|void| is_same(value, *void));
-            }
+        if !is_height(value) {
+            return if is_void(value, *no_data) { Ok(()) } else { Err((index, value)) };
+        }
+        if !seen.has_known && !is_void(value, *no_data) {
+            seen.has_height = true;
+            seen.has_known = !voids.iter().any(|void| is_same(value, *void));
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 //! allocates; it gives a valid map or names the field that is wrong.
 
 mod ascii_grid;
+mod distinct;
 mod esri;
 mod first_look;
 mod geotiff;
@@ -23,13 +24,35 @@ use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 const KNOWN_ENDINGS: &str = ".hgt, .hdr, .bil, .bsq, .dem, .asc, .tif, .tiff, .png, .vrt";
-/// Endings whose files are told apart by nothing else.
-const BY_ENDING: [&str; 7] = ["hdr", "bil", "bsq", "dem", "vrt", "hgt", "asc"];
 /// Of UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// TIFF and BigTIFF, little and big endian.
 const TIFF_MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+
+/// Format of a file by its ending.
+#[derive(PartialEq, Eq)]
+enum Format {
+    Esri,
+    Mosaic,
+    Hgt,
+    AsciiGrid,
+    /// A TIFF or a PNG, or something else: its content tells.
+    ByContent,
+}
+
+impl Format {
+    /// By an ending in small letters.
+    fn of(ending: &str) -> Self {
+        match ending {
+            "hdr" | "bil" | "bsq" | "dem" => Self::Esri,
+            "vrt" => Self::Mosaic,
+            "hgt" => Self::Hgt,
+            "asc" => Self::AsciiGrid,
+            _ => Self::ByContent,
+        }
+    }
+}
 
 /// Reads the height map at `path`: a folder of SRTM tiles, or a file by its ending, in either case, or by its content if that is
 /// a TIFF or a PNG.
@@ -45,23 +68,22 @@ pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<Height
         return hgt_folder::load(path);
     }
     let ending = ending(path);
-    if matches!(ending.as_str(), "hdr" | "bil" | "bsq" | "dem") {
-        return esri::load(path, has_own_spacing);
-    }
-    if ending == "vrt" {
-        return vrt::load(path, has_own_spacing);
-    }
-    let (mut file, size_bytes) = file::open(path, Asset::HeightMap)?;
-    let parsed = match ending.as_str() {
-        "hgt" => {
+    let open = || file::open(path, Asset::HeightMap);
+    let parsed = match Format::of(&ending) {
+        Format::Esri => return esri::load(path, has_own_spacing),
+        Format::Mosaic => return vrt::load(path, has_own_spacing),
+        Format::Hgt => {
+            let (file, size_bytes) = open()?;
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             hgt::parse(&name, size_bytes, BufReader::new(file))
         }
-        "asc" => {
+        Format::AsciiGrid => {
+            let (file, size_bytes) = open()?;
             let projection = placement::beside(path)?;
             ascii_grid::parse(size_bytes, BufReader::new(file), projection, has_own_spacing)
         }
-        _ => {
+        Format::ByContent => {
+            let (mut file, size_bytes) = open()?;
             let magic = magic(&mut file, path)?;
             if magic == PNG_MAGIC {
                 png::parse(size_bytes, BufReader::new(file))
@@ -141,6 +163,19 @@ fn check_compressed(size_bytes: u64, (width, height): (u32, u32), bits: u32) -> 
         return Ok(());
     }
     Err(format!("its size is {size_bytes} bytes, too few for {width} x {height} samples; it is cut off"))
+}
+
+/// Passes for a name of the metre, and for none: heights of another unit would be read as metres in silence.
+fn check_unit(name: &str) -> Result<(), String> {
+    let name = name.trim();
+    let lower = name.to_lowercase();
+    if ["", "m"].contains(&&*lower) || ["metre", "meter", "m "].iter().any(|begin| lower.starts_with(begin)) {
+        return Ok(());
+    }
+    let name: String = name.chars().take(40).collect();
+    Err(format!(
+        "its heights are in {name:?}; write metres, for instance with gdal_calc --calc=A*0.3048 where they are feet"
+    ))
 }
 
 /// The text of a small file beside a map or a picture, such as its header, without the mark of UTF-8 that some editors put

@@ -97,11 +97,14 @@ pub(super) fn beside(raster: &Path) -> Result<Option<Unit>, Error> {
 }
 
 /// The unit in a projection's text: well-known text, or the older lines of keywords that GTOPO30 ships.
-fn unit(projection: &str) -> Option<Unit> {
+pub(super) fn unit(projection: &str) -> Option<Unit> {
     let upper = projection.to_uppercase();
     if upper.contains("PROJCS") || upper.contains("PROJCRS") {
+        // Heights may have a system of their own behind it.
+        let end = ["VERT_CS[", "VERTCS[", "VERTCRS["].iter().filter_map(|word| upper.find(word)).min();
+        let projected = &upper[..end.unwrap_or(upper.len())];
         // The last unit is that of the projected coordinates: UNIT["name",metres].
-        let unit = upper.rsplit("UNIT[").next().and_then(|tail| tail.split(',').nth(1));
+        let unit = projected.rsplit("UNIT[").next().and_then(|tail| tail.split(',').nth(1));
         let digits = |text: &str| text.trim().trim_end_matches([']', ' ']).parse::<f64>().ok();
         let metres = unit.and_then(|tail| digits(tail.split(']').next().unwrap_or(tail)));
         return Some(Unit::Metres(metres.filter(|metres| metres.is_finite() && *metres > 0.0).unwrap_or(1.0)));
@@ -129,6 +132,11 @@ mod tests {
             Some(Unit::Metres(0.304_800_609_601_219_2))
         );
         assert_eq!(unit(&projected(r#"UNIT["broken""#)), Some(Unit::Metres(1.0)));
+        let with_heights =
+            format!(r#"COMPD_CS["y",{},VERT_CS["z",UNIT["metre",1]]]"#, projected(r#"UNIT["Foot",0.3048]"#));
+        assert_eq!(unit(&with_heights), Some(Unit::Metres(0.3048)));
+        let vertical = projected(r#"PARAMETER["Vertical_Perspective",1],UNIT["Foot",0.3048]"#);
+        assert_eq!(unit(&vertical), Some(Unit::Metres(0.3048)));
         assert_eq!(unit("Projection UTM\nUnits METERS\n"), Some(Unit::Metres(1.0)));
         assert_eq!(unit("nothing"), None);
     }

@@ -1,4 +1,5 @@
 use super::check_compressed;
+use super::distinct::firsts;
 use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
@@ -55,27 +56,47 @@ pub(super) fn look_through(
 /// Decodes all rows, one by one; true where a sample is a height that is none of `voids`, which stand for none as well.
 fn check_samples(reader: &mut Reader<impl BufRead + Seek>, voids: &[f64]) -> Result<bool, Fault> {
     let (color, depth) = reader.output_color_type();
-    let (value_bytes, has_alpha) = (if depth == BitDepth::Sixteen { 2 } else { 1 }, color != ColorType::Grayscale);
-    let pixel_bytes = if has_alpha { 2 * value_bytes } else { value_bytes };
-    let (mut has_height, mut has_known) = (!has_alpha, !has_alpha && voids.is_empty());
+    let has_alpha = color != ColorType::Grayscale;
+    let mut look = Look { voids, has_height: !has_alpha, has_known: !has_alpha && voids.is_empty() };
     while let Some(row) = reader.next_interlaced_row().map_err(foreign)? {
-        if has_known {
-            continue;
-        }
-        for pixel in row.data().chunks_exact(pixel_bytes) {
-            let (value, alpha) = pixel.split_at(value_bytes);
-            if has_alpha && alpha.iter().all(|byte| *byte == 0) {
-                continue;
-            }
-            has_height = true;
-            let value = value.iter().fold(0_u16, |value, byte| value << 8 | u16::from(*byte));
-            if !voids.iter().any(|void| is_same(value.into(), *void)) {
-                has_known = true;
-                break;
-            }
+        match (depth, has_alpha) {
+            (BitDepth::Sixteen, true) => look.at::<4>(row.data(), |[high, low, a, b]| ([high, low], a | b)),
+            (BitDepth::Sixteen, false) => look.at::<2>(row.data(), |value| (value, 1)),
+            (_, true) => look.at::<2>(row.data(), |[value, alpha]| ([0, value], alpha)),
+            (_, false) => look.at::<1>(row.data(), |[value]| ([0, value], 1)),
         }
     }
-    if has_height { Ok(has_known) } else { Err(all_void()) }
+    if look.has_height { Ok(look.has_known) } else { Err(all_void()) }
+}
+
+struct Look<'a> {
+    voids: &'a [f64],
+    /// A sample is a height.
+    has_height: bool,
+    /// One is none of `voids`.
+    has_known: bool,
+}
+
+impl Look<'_> {
+    /// Looks at pixels of so many bytes, of which `parts` gives the sample and an opacity, until a height is known.
+    fn at<const N: usize>(&mut self, bytes: &[u8], parts: impl Fn([u8; N]) -> ([u8; 2], u8)) {
+        if self.has_known {
+            return;
+        }
+        let pixels = bytes.as_chunks::<N>().0;
+        let mut look = |pixel: [u8; N]| {
+            let (value, opacity) = parts(pixel);
+            if opacity > 0 {
+                let value = f64::from(u16::from_be_bytes(value));
+                self.has_height = true;
+                self.has_known |= !self.voids.iter().any(|void| is_same(value, *void));
+            }
+        };
+        match firsts(pixels) {
+            Some(firsts) => firsts.into_iter().for_each(|index| look(pixels[index])),
+            None => pixels.iter().for_each(|&pixel| look(pixel)),
+        }
+    }
 }
 
 /// The size of a grey PNG of 8 or 16 bits, and what reads its rows.

@@ -309,6 +309,30 @@ fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
     assert_eq!(tagged(42_113, "void").unwrap_err().to_string(), "GDAL_NODATA: it is \"void\", not a number");
     let metadata = "<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item></GDALMetadata>";
     assert!(tagged(42_112, metadata).unwrap_err().to_string().contains("gdal_translate -unscale"));
+    // Heights of another unit than the metre.
+    let of_unit = |unit: &str| {
+        let item = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
+        tagged(42_112, &format!("<GDALMetadata>{item}</GDALMetadata>")).map_err(|fault| fault.to_string())
+    };
+    for unit in ["m", "metre", "Meters", "m above the sea", ""] {
+        assert!(of_unit(unit).is_ok(), "{unit}");
+    }
+    for unit in ["ft", "US survey foot", "mm"] {
+        let fault = of_unit(unit).unwrap_err();
+        assert!(fault.starts_with(&format!("GDAL_METADATA: its heights are in {unit:?}; write metres")), "{fault}");
+    }
+    let of_key = |unit: u16| {
+        tiff(&|file| {
+            let mut image = file.new_image::<Gray16>(2, 2).unwrap();
+            let keys = [1, 1, 0, 1, 4_099, 0, 1, unit];
+            image.encoder().write_tag(tiff::tags::Tag::GeoKeyDirectoryTag, &keys[..]).unwrap();
+            image.encoder().write_tag(tiff::tags::Tag::ModelPixelScaleTag, &[2.0_f64, 2.0, 0.0][..]).unwrap();
+            image.write_data(&[1, 2, 7, 4]).unwrap();
+        })
+    };
+    assert!(of_key(9_001).is_ok());
+    assert!(of_key(9_003).unwrap_err().to_string().starts_with("VerticalUnits: its heights are in \"feet\"; write"));
+    assert!(of_key(9_036).unwrap_err().to_string().starts_with("VerticalUnits: the unit 9036 of heights is not known"));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Mosaics of GDAL: a virtual raster in XML whose parts are other files, sample by sample. Nothing is resampled or scaled.
 
-use super::{first_look, load as load_file, malformed};
+use super::geotiff::MAX_BYTES;
+use super::placement::{self, MapCoordinates, Unit};
+use super::{check_unit, first_look, load as load_file, malformed};
 use crate::file as any_file;
 use crate::scene::binary::{allocate, spare_bytes};
 use crate::scene::error::{Asset, Fault, Place};
@@ -22,6 +24,9 @@ const MOST_EMPTY: u64 = 16;
 const ANY_SAMPLES: u64 = 16 << 20;
 /// Most parts over a sample, on average.
 const MOST_OVER: u64 = 4;
+/// Bytes that the packed files of a mosaic may unpack to together, beyond so many for each of theirs: as many as one of them may.
+const MOST_UNPACKED: u64 = MAX_BYTES as u64;
+const UNPACKED_PER_BYTE: u64 = 16;
 /// A file's parts stand together, or are parted by others so often, beside some times that any mosaic may have.
 const MOST_TIMES: usize = 4;
 const ANY_TIMES: usize = 16;
@@ -32,8 +37,10 @@ const LONGEST_NAME: usize = 1024;
 struct Mosaic {
     size: (u32, u32),
     no_data: Option<f64>,
-    /// Steps east and south between samples.
-    step: Option<DVec2>,
+    /// The middle of its first sample, and the steps between them.
+    coordinates: Option<Coordinates>,
+    /// Of the coordinates, as its reference system names it.
+    unit: Option<Unit>,
     parts: Vec<Part>,
 }
 
@@ -79,7 +86,14 @@ impl Mosaic {
         let (width, height): (u64, u64) = (attribute(root, "rasterXSize")?, attribute(root, "rasterYSize")?);
         check_size(width, height).map_err(|reason| fault(root, reason))?;
         let size = (width as u32, height as u32);
-        let step = child(root, "GeoTransform").map(step_of).transpose()?;
+        let coordinates = child(root, "GeoTransform").map(coordinates_of).transpose()?;
+        let unit = child(root, "SRS").and_then(|node| placement::unit(self::text(node)));
+        if let Some(node) = child(root, "MaskBand") {
+            return Err(fault(
+                node,
+                "it hides samples, and is not read; declare them as voids with gdal_translate -a_nodata",
+            ));
+        }
         let mut bands = root.children().filter(|node| node.has_tag_name("VRTRasterBand"));
         let Some(band) = bands.next() else { return Err(fault(root, "it has no VRTRasterBand")) };
         if let Some(other) = bands.next() {
@@ -87,6 +101,16 @@ impl Mosaic {
         }
         if let Some(kind) = band.attribute("subClass") {
             return Err(fault(band, format!("its subClass is {:?}; plain mosaics alone are read", shown(kind))));
+        }
+        for (name, plain) in [("Scale", 1.0), ("Offset", 0.0)] {
+            if let Some(node) = child(band, name)
+                && number(node)? != plain
+            {
+                return Err(fault(node, "it changes heights; write plain metres with gdal_translate -unscale"));
+            }
+        }
+        if let Some(node) = child(band, "UnitType") {
+            check_unit(self::text(node)).map_err(|reason| fault(node, reason))?;
         }
         let no_data = child(band, "NoDataValue").map(number).transpose()?;
         let sources = band.children().filter(|node| node.tag_name().name().ends_with("Source"));
@@ -107,13 +131,13 @@ impl Mosaic {
                 format!("its parts have {copied} samples for {width} x {height}; leave out those that others hide");
             return Err(fault(root, reason));
         }
-        Ok(Mosaic { size, no_data, step, parts })
+        Ok(Mosaic { size, no_data, coordinates, unit, parts })
     }
 
     /// The file of each part, in their order, and what is known of all of them.
     fn files(&self, path: &Path, text: &str, options: MapOptions) -> Result<Files, Error> {
         let mut sizes = BTreeMap::new();
-        let mut most_bytes = 0;
+        let (mut most_bytes, mut unpacked_bytes) = (0, 0_u64);
         let mut files: Vec<PathBuf> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
             let refused = |reason: String| part.refused(path, text, reason);
@@ -122,8 +146,19 @@ impl Mosaic {
                 return Err(refused(format!("{}: a mosaic's parts are files of heights", part.name)));
             }
             if let Entry::Vacant(size) = sizes.entry(file.clone()) {
-                size.insert(file::open(&file, Asset::HeightMap)?.1);
-                most_bytes = most_bytes.max(first_look::most_bytes(&file, options)?);
+                let size_bytes = *size.insert(file::open(&file, Asset::HeightMap)?.1);
+                let unpacked = first_look::unpacked(&file, options)?;
+                most_bytes = most_bytes.max(unpacked.most_bytes);
+                unpacked_bytes += unpacked.raw_bytes.saturating_sub(UNPACKED_PER_BYTE.saturating_mul(size_bytes));
+                // All of them are unpacked before one that is damaged is found.
+                if unpacked_bytes > MOST_UNPACKED {
+                    return Err(refused(format!(
+                        "with {} its packed files unpack to more than {} MiB beyond {UNPACKED_PER_BYTE} times their size; \
+                         write some anew with gdal_translate -co COMPRESS=NONE",
+                        part.name,
+                        MOST_UNPACKED >> 20
+                    )));
+                }
             }
             files.push(file);
         }
@@ -194,7 +229,12 @@ impl Mosaic {
                 pairs.filter(|(_, height)| !is_void(**height, &voids)).for_each(|(value, height)| *value = *height);
             }
         }
-        let placement = agreed.placement.unwrap_or(Placement::Unknown);
+        let placement = match agreed.placement {
+            Some(Placement::Unknown) | None if !options.has_own_spacing => {
+                self.own_placement().map_err(|fault| malformed(path, fault))?
+            }
+            placement => placement.unwrap_or(Placement::Unknown),
+        };
         let integral = !agreed.has_fractions;
         let (width, height) = self.size;
         Grid { width, height, values, integral, no_data: Some(f64::NAN), placement }
@@ -202,10 +242,18 @@ impl Mosaic {
             .map_err(|fault| malformed(path, fault))
     }
 
+    /// The place that the mosaic itself states, for parts that have none.
+    fn own_placement(&self) -> Result<Placement, Fault> {
+        let Some(Coordinates { north_west, step }) = self.coordinates else { return Ok(Placement::Unknown) };
+        let (width, height) = self.size;
+        let north_west = Some(north_west);
+        MapCoordinates { north_west, step, width, height, field: "GeoTransform" }.placed(self.unit)
+    }
+
     /// The mosaic's place as one of its parts has it.
     fn placement(&self, map: &HeightMap, part: &Part) -> Result<Placement, String> {
         let Some(Coordinates { north_west, step }) = map.coordinates() else { return Ok(Placement::Unknown) };
-        if self.step.is_some_and(|own| ((own - step) / step).abs().max_element() > 1e-6) {
+        if self.coordinates.is_some_and(|own| ((own.step - step) / step).abs().max_element() > 1e-6) {
             return Err(format!("the samples of {} are not as far apart as its GeoTransform says", part.name));
         }
         let offset = |to: u32, from: u32| f64::from(to) - f64::from(from);
@@ -235,10 +283,16 @@ impl Agreed {
         }
         self.has_fractions |= !matches!(map.samples(), Samples::Steps { step_m: 1.0, .. });
         let here = mosaic.placement(map, part)?;
-        if is_one(*self.placement.get_or_insert(here), here) {
+        let first = *self.placement.get_or_insert(here);
+        if is_one(first, here) {
             return Ok(());
         }
-        Err(format!("{} does not lie where its DstRect says, beside the first part", part.name))
+        let name = &part.name;
+        Err(match (first, here) {
+            (Placement::Unknown, _) => format!("{name} has a place, and the first part has none that a map may have"),
+            (_, Placement::Unknown) => format!("{name} has no place that a map may have, and the first part has one"),
+            _ => format!("{name} does not lie where its DstRect says, beside the first part"),
+        })
     }
 }
 
@@ -356,12 +410,13 @@ impl Part {
     }
 }
 
-/// Steps east and south between samples, of a raster that is not turned.
-fn step_of(node: Node<'_, '_>) -> Result<DVec2, Fault> {
+/// The middle of the first sample and the steps between samples, of a raster that is not turned.
+fn coordinates_of(node: Node<'_, '_>) -> Result<Coordinates, Fault> {
     let numbers: Vec<f64> = text(node).split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers[..] {
-        [_, east, turned, _, other, south] if east > 0.0 && south < 0.0 && turned == 0.0 && other == 0.0 => {
-            Ok(DVec2::new(east, -south))
+        [west, east, turned, north, other, south] if east > 0.0 && south < 0.0 && turned == 0.0 && other == 0.0 => {
+            let north_west = DVec2::new(west + east / 2.0, north + south / 2.0);
+            Ok(Coordinates { north_west, step: DVec2::new(east, -south) })
         }
         _ => Err(fault(node, "it is not north up")),
     }

@@ -7,11 +7,13 @@ mod relief;
 use super::map::check_size;
 use super::{HeightMap, Samples};
 use crate::scene::Error;
+use crate::scene::loading::Conditions;
 use erosion::Gullies;
 use glam::{DVec2, Vec2};
 use noise::Noise;
 use rayon::prelude::*;
 use relief::{Bare, Relief};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Length of a side of the terrain.
@@ -27,12 +29,21 @@ const CONTROLS: usize = KNOTS + 3;
 /// All sizes sample one smooth surface of the seed, from edge to edge, in the same steps of about 2 cm.
 ///
 /// # Errors
-/// A side outside [`HeightMap::SIDE`].
+/// A side outside [`HeightMap::SIDE`]; [`Error::Interrupted`].
 pub fn volcano(side: u32, seed: u64) -> Result<HeightMap, Error> {
+    volcano_unless(Conditions::current().watch.interrupted, side, seed)
+}
+
+fn volcano_unless(interrupted: &AtomicBool, side: u32, seed: u64) -> Result<HeightMap, Error> {
     check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
     let spacing_m = f64::from(EXTENT_M) / f64::from(side - 1);
-    HeightMap::new(side, side, Terrain::of(seed, side as usize).steps(side as usize))?
-        .with_spacing_m(DVec2::splat(spacing_m))
+    let samples = Terrain::of(interrupted, seed, side as usize)?.steps(interrupted, side as usize)?;
+    HeightMap::new(side, side, samples)?.with_spacing_m(DVec2::splat(spacing_m))
+}
+
+/// Fails once nobody waits for the volcano any more; asked at every row.
+fn look(interrupted: &AtomicBool) -> Result<(), Error> {
+    if interrupted.load(Ordering::Relaxed) { Err(Error::Interrupted { path: "volcano".into() }) } else { Ok(()) }
 }
 
 /// The rows of [`volcano()`] of a side and a seed, made when they are asked for.
@@ -42,8 +53,11 @@ pub(super) struct VolcanoRows {
 }
 
 impl VolcanoRows {
-    pub(super) fn new(side: u32, seed: u64) -> Self {
-        VolcanoRows { terrain: Terrain::of(seed, side as usize), side }
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(super) fn new(side: u32, seed: u64) -> Result<Self, Error> {
+        let interrupted = Conditions::current().watch.interrupted;
+        Ok(VolcanoRows { terrain: Terrain::of(interrupted, seed, side as usize)?, side })
     }
 
     /// All but the samples.
@@ -55,8 +69,12 @@ impl VolcanoRows {
     }
 
     /// Whole rows from one on.
-    pub(super) fn fill(&self, first_row: u32, values: &mut [u16]) {
-        self.terrain.rows(self.side as usize, first_row as usize, values);
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(super) fn fill(&self, first_row: u32, values: &mut [u16]) -> Result<(), Error> {
+        let interrupted = Conditions::current().watch.interrupted;
+        self.terrain.rows(interrupted, self.side as usize, first_row as usize, values)
     }
 }
 
@@ -83,21 +101,21 @@ type Latest = (u64, Option<usize>, Arc<Terrain>);
 
 impl Terrain {
     /// The terrain of a seed, for samples of that side, from [`LATEST`] if it is there.
-    fn of(seed: u64, side: usize) -> Arc<Self> {
+    fn of(interrupted: &AtomicBool, seed: u64, side: usize) -> Result<Arc<Self>, Error> {
         let latest = || LATEST.lock().unwrap_or_else(PoisonError::into_inner);
         let few = Some(side).filter(|side| seed == USUAL.0 && *side <= FEW);
         let fits = |(of, made_for, _): &&Latest| *of == seed && (made_for.is_none() || *made_for == few);
         if let Some((.., terrain)) = latest().as_ref().filter(fits) {
-            return Arc::clone(terrain);
+            return Ok(Arc::clone(terrain));
         }
         // Not under the lock: a thread that waits for rayon may be given a job that comes here too.
-        let terrain = Arc::new(Self::new(seed, few));
+        let terrain = Arc::new(Self::new(interrupted, seed, few)?);
         *latest() = Some((seed, few, Arc::clone(&terrain)));
-        terrain
+        Ok(terrain)
     }
 
     /// All of it, or of the usual seed what the samples of a side depend on.
-    fn new(seed: u64, few: Option<usize>) -> Self {
+    fn new(interrupted: &AtomicBool, seed: u64, few: Option<usize>) -> Result<Self, Error> {
         let relief = Relief::new(seed);
         let gullies = Gullies::new(Noise::new(seed, 0), 0.51 * EXTENT_M);
         // One control more on each side, for the slopes.
@@ -114,14 +132,15 @@ impl Terrain {
         let has_needed = |at: usize| (at.saturating_sub(2)..=at.min(CONTROLS - 1)).any(|at| is_needed[at]);
         let is_asked: Vec<bool> = (0..side).map(has_needed).collect();
         let mut bare = vec![Bare::default(); side * side];
-        bare.par_chunks_mut(side).enumerate().filter(|(row, _)| is_asked[*row]).for_each_init(
+        bare.par_chunks_mut(side).enumerate().filter(|(row, _)| is_asked[*row]).try_for_each_init(
             || relief.clone(),
             |relief, (row, line)| {
                 for (column, bare) in line.iter_mut().enumerate().filter(|(column, _)| is_asked[*column]) {
                     *bare = relief.at(place(column, row));
                 }
+                look(interrupted)
             },
-        );
+        )?;
         let knot_m = EXTENT_M / KNOTS as f32;
         let control_m = |column: usize, row: usize| {
             let here = bare[row * side + column];
@@ -133,24 +152,25 @@ impl Terrain {
         };
         let mut controls_m = vec![0.0; CONTROLS * CONTROLS];
         let rows = controls_m.par_chunks_mut(CONTROLS).enumerate();
-        rows.filter(|(row, _)| is_needed[*row]).for_each(|(row, line)| {
+        rows.filter(|(row, _)| is_needed[*row]).try_for_each(|(row, line)| {
             for (column, height_m) in line.iter_mut().enumerate().filter(|(column, _)| is_needed[*column]) {
                 *height_m = control_m(column + 1, row + 1);
             }
-        });
+            look(interrupted)
+        })?;
         let range_m = match few {
             Some(_) => USUAL.1,
             None => controls_m.iter().fold((f32::MAX, f32::MIN), |(low, high), &h| (low.min(h), high.max(h))),
         };
-        Self { controls_m, range_m }
+        Ok(Self { controls_m, range_m })
     }
 
     /// The surface at `side` x `side` places, at least two a side.
-    fn steps(&self, side: usize) -> Samples {
+    fn steps(&self, interrupted: &AtomicBool, side: usize) -> Result<Samples, Error> {
         let mut values = vec![0; side * side];
-        self.rows(side, 0, &mut values);
+        self.rows(interrupted, side, 0, &mut values)?;
         let (origin_m, step_m) = self.scale();
-        Samples::Steps { values, origin_m, step_m }
+        Ok(Samples::Steps { values, origin_m, step_m })
     }
 
     /// Height of step 0 and between steps, metres.
@@ -160,9 +180,9 @@ impl Terrain {
     }
 
     /// Some rows of [`Self::steps`], from `first_row` on.
-    fn rows(&self, side: usize, first_row: usize, values: &mut [u16]) {
+    fn rows(&self, interrupted: &AtomicBool, side: usize, first_row: usize, values: &mut [u16]) -> Result<(), Error> {
         let (low_m, step_m) = self.scale();
-        values.par_chunks_mut(side).enumerate().for_each_init(
+        values.par_chunks_mut(side).enumerate().try_for_each_init(
             || vec![0.0_f32; CONTROLS],
             |line, (row, values)| {
                 let (first, weights) = taps(first_row + row, side);
@@ -174,8 +194,9 @@ impl Terrain {
                     let height_m: f32 = (0..4).map(|tap| weights[tap] * line[first + tap]).sum();
                     *value = ((height_m - low_m) / step_m).round() as u16;
                 }
+                look(interrupted)
             },
-        );
+        )
     }
 }
 
@@ -194,6 +215,26 @@ fn taps(sample: usize, side: usize) -> (usize, [f32; 4]) {
 mod tests {
     use super::*;
 
+    static NEVER: AtomicBool = AtomicBool::new(false);
+
+    fn terrain(seed: u64, few: Option<usize>) -> Terrain {
+        Terrain::new(&NEVER, seed, few).unwrap()
+    }
+
+    #[test]
+    fn one_that_nobody_waits_for_is_not_made() {
+        let interrupted = AtomicBool::new(true);
+        let is_given_up = |error| matches!(error, Err(Error::Interrupted { .. }));
+        // Of a seed that is not there yet, so that the terrain is given up; then its samples.
+        assert!(is_given_up(volcano_unless(&interrupted, 2_000, 77).map(drop)));
+        let whole = terrain(77, None);
+        let mut values = vec![1; 2_000 * 2_000];
+        assert!(is_given_up(whole.rows(&interrupted, 2_000, 0, &mut values)));
+        assert!(values.iter().filter(|value| **value == 1).count() > values.len() / 2);
+        // What was given up is not taken for made.
+        assert_eq!(*Terrain::of(&NEVER, 77, CONTROLS).unwrap().controls_m, whole.controls_m);
+    }
+
     #[test]
     fn every_size_samples_the_same_terrain() {
         let [coarse, fine] = [65, 513].map(|side| volcano(side, 1).unwrap());
@@ -207,8 +248,8 @@ mod tests {
 
     #[test]
     fn seeds_make_different_terrains_and_one_seed_the_same() {
-        let made_again = Terrain::new(1, None);
-        let of = |seed: u64| Terrain::of(seed, CONTROLS);
+        let made_again = terrain(1, None);
+        let of = |seed: u64| Terrain::of(&NEVER, seed, CONTROLS).unwrap();
         assert_eq!(made_again.controls_m, of(1).controls_m);
         assert_ne!(made_again.controls_m, of(2).controls_m);
         // Whatever was made last.
@@ -218,14 +259,14 @@ mod tests {
 
     #[test]
     fn few_samples_are_those_of_all_the_terrain() {
-        let whole = Terrain::new(USUAL.0, None);
+        let whole = terrain(USUAL.0, None);
         for side in [2, 3, 9, 65, FEW] {
-            let few = Terrain::new(USUAL.0, Some(side));
+            let few = terrain(USUAL.0, Some(side));
             let computed = few.controls_m.iter().filter(|&&height_m| height_m != 0.0).count();
             assert!(computed <= 16 * side * side && computed < CONTROLS * CONTROLS, "{side}: {computed}");
             let rows = |terrain: &Terrain| {
                 let mut values = vec![0; side * side];
-                terrain.rows(side, 0, &mut values);
+                terrain.rows(&NEVER, side, 0, &mut values).unwrap();
                 values
             };
             assert_eq!((rows(&few), few.scale()), (rows(&whole), whole.scale()), "{side}");

@@ -52,6 +52,10 @@ fn parts_lie_where_the_mosaic_says() {
     let place = map.coordinates().unwrap();
     assert_eq!((place.north_west, place.step), (DVec2::new(1005.0, 1995.0), DVec2::splat(10.0)));
     assert_eq!(map.spacing_m(), DVec2::splat(10.0));
+    // What says that heights are metres changes nothing.
+    let plain = "<Offset>0</Offset><Scale>1</Scale><UnitType>metre</UnitType></VRTRasterBand>";
+    let text = mosaic((5, 2), &parts).replacen("</VRTRasterBand>", plain, 1);
+    assert_eq!(load_text(folder.path(), &text).unwrap(), map);
     // A rectangle of a part, and its place by the part that it comes from.
     let parts = part("east.asc", (0, 0), ((1, 0), (2, 2)));
     let map = load_text(folder.path(), &mosaic((2, 2), &parts)).unwrap();
@@ -83,6 +87,10 @@ fn what_would_change_heights_or_lies_elsewhere_is_refused() {
         (with(" 10.0, 0.0, 2000", " 10.0, 1.0, 2000"), "line 2: GeoTransform: it is not north up"),
         (with(" 10.0, 0.0, 2000", " 11.0, 0.0, 2000"), "not as far apart as its GeoTransform says"),
         (with("-9999</NoDataValue>", "none</NoDataValue>"), "NoDataValue: it is \"none\", not a number"),
+        (with("</VRTDataset>", "<MaskBand><VRTRasterBand/></MaskBand></VRTDataset>"), "MaskBand: it hides samples"),
+        (with("<NoDataValue>", "<Scale>0.1</Scale>\n<NoDataValue>"), "line 4: Scale: it changes heights"),
+        (with("<NoDataValue>", "<Offset>5</Offset>\n<NoDataValue>"), "line 4: Offset: it changes heights"),
+        (with("<NoDataValue>", "<UnitType>ft</UnitType>\n<NoDataValue>"), "UnitType: its heights are in \"ft\"; write"),
         (with("<VRTRasterBand ", "<VRTRasterBand subClass=\"VRTDerivedRasterBand\" "), "its subClass is"),
         (with("</VRTRasterBand>", "</VRTRasterBand><VRTRasterBand/>"), "it is a second band"),
         (mosaic((5, 2), ""), "it has no SimpleSource"),
@@ -132,7 +140,7 @@ fn what_is_packed_is_looked_through_before_any_of_it_is_kept() {
         assert_eq!((map.width(), map.height(), map.samples().len(), has_known), (SIDE, SIDE, 0, is_known), "{voids:?}");
     }
     assert!(first_look::look_through(&folder.path().join("west.asc"), options, &[]).unwrap().is_none());
-    assert!(first_look::most_bytes(&path, options).unwrap() > spare_bytes(fs::metadata(&path).unwrap().len()));
+    assert!(first_look::unpacked(&path, options).unwrap().most_bytes > spare_bytes(fs::metadata(&path).unwrap().len()));
     let map = load_text(folder.path(), &text).unwrap();
     assert_eq!((map.width(), map.voids(), map.range_m()), (SIDE, 0, (0.0, 5.0)));
     let map = load_text(folder.path(), &voids).unwrap();
@@ -156,6 +164,28 @@ fn what_is_packed_is_looked_through_before_any_of_it_is_kept() {
 }
 
 #[test]
+fn a_mosaic_places_parts_that_have_no_place() {
+    let folder = folder();
+    fs::write(folder.path().join("bare.asc"), "ncols 3\nnrows 2\n1 2 3\n4 5 6\n").unwrap();
+    let text = mosaic((3, 2), &part("bare.asc", (0, 0), ((0, 0), (3, 2))));
+    let placed = |text: &str| load_text(folder.path(), text).unwrap();
+    let place = placed(&text).coordinates().unwrap();
+    assert_eq!((place.north_west, place.step), (DVec2::new(1005.0, 1995.0), DVec2::splat(10.0)));
+    assert_eq!(placed(&text).spacing_m(), DVec2::splat(10.0));
+    // By the unit of its reference system, and in degrees.
+    let srs = |wkt: &str| text.replacen("<GeoTransform>", &format!("<SRS>{wkt}</SRS><GeoTransform>"), 1);
+    let feet = placed(&srs("PROJCS[&quot;x&quot;,UNIT[&quot;Foot&quot;,0.3048]]"));
+    assert_eq!(feet.spacing_m(), DVec2::splat(3.048));
+    let degrees = text.replace("1000.0, 10.0, 0.0, 2000.0, 0.0, -10.0", "7.0, 0.01, 0.0, 45.0, 0.0, -0.01");
+    assert!(placed(&degrees).geographic().is_some());
+    let far = text.replace("1000.0, 10.0, 0.0, 2000.0, 0.0, -10.0", "0.0, 1e7, 0.0, 0.0, 0.0, -1e7");
+    let message = load_text(folder.path(), &far).unwrap_err().to_string();
+    assert!(message.contains("all.vrt: GeoTransform: it makes samples lie"), "{message}");
+    let bare = placed(&text.replace("GeoTransform", "Metadata"));
+    assert_eq!((bare.coordinates(), bare.spacing_m()), (None, DVec2::ONE));
+}
+
+#[test]
 fn a_spacing_of_the_users_stands_in_for_that_of_the_parts() {
     let folder = folder();
     let far = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1e300\n1 2 3\n4 5 6\n";
@@ -166,4 +196,15 @@ fn a_spacing_of_the_users_stands_in_for_that_of_the_parts() {
     let options = MapOptions { has_own_spacing: true, ..MapOptions::default() };
     let map = super::super::load(&folder.path().join("all.vrt"), options).unwrap();
     assert_eq!((map.range_m(), map.coordinates(), map.spacing_m()), ((1.0, 6.0), None, DVec2::ONE));
+    // Beside a part that has a place, in either order.
+    let all = ((0, 0), (3, 2));
+    for (first, second, expected) in [
+        ("west.asc", "far.asc", "far.asc has no place that a map may have, and the first part has one"),
+        ("far.asc", "west.asc", "west.asc has a place, and the first part has none that a map may have"),
+    ] {
+        let text = mosaic((6, 2), &(part(first, (0, 0), all) + &part(second, (3, 0), all)));
+        fs::write(folder.path().join("all.vrt"), text).unwrap();
+        let message = super::super::load(&folder.path().join("all.vrt"), options).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
 }
