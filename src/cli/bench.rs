@@ -23,6 +23,17 @@ use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
 use crate::report::{Record, environment};
 
+/// Fails before long work where a picture cannot be written, or a file would take another's place; the files that are written.
+pub fn check<S: Study>(common: &CommonArgs, study: &S, variants: &[S::Variant]) -> Result<Vec<PathBuf>, Failure> {
+    let output = &common.output;
+    let pictures: Vec<PathBuf> = output.image.iter().flat_map(|named| picture_files(named, variants)).collect();
+    pictures.iter().try_for_each(|path| outcome::check_file(path))?;
+    let documents = output.files().filter(|path| Some(*path) != output.image.as_ref());
+    let written: Vec<PathBuf> = documents.cloned().chain(pictures).collect();
+    outcome::check_apart(&written, &reading::by_study(study, &common.machine))?;
+    Ok(written)
+}
+
 /// Measures `variants` of a study, or has fresh processes measure them, and publishes the record where `common` says, which
 /// has been checked.
 pub fn publish<S: Study>(
@@ -32,10 +43,7 @@ pub fn publish<S: Study>(
     variants: &[S::Variant],
 ) -> Result<(), Failure> {
     let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
-    let pictures: Vec<PathBuf> = output.image.iter().flat_map(|named| picture_files(named, variants)).collect();
-    pictures.iter().try_for_each(|path| outcome::check_file(path))?;
-    let documents = output.files().filter(|path| Some(*path) != output.image.as_ref());
-    outcome::check_apart(documents.chain(&pictures), &reading::by_study(study, &common.machine))?;
+    check(common, study, variants)?;
     if *processes > 1 {
         let (record, failed) = processes::run(*processes, output.quiet)?;
         // The first process has written the pictures and the trace.

@@ -14,6 +14,7 @@ use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
 use super::{bench, help, loading, passes, pool, reading, render, shader_folder, spelling};
 use crate::file;
+use crate::measure::bench::QUICKLY_READ;
 use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
@@ -341,6 +342,26 @@ fn is_part(matches: &ArgMatches) -> bool {
     ["process", "step_report"].into_iter().any(|name| matches.try_contains_id(name).is_ok() && is_typed(name))
 }
 
+/// Checks a bench of these arguments as far as that goes without a device, and lists the files that it writes.
+///
+/// # Errors
+/// All that it would refuse before that; large mesh files are not read.
+pub fn check_bench<S: Study>(matches: &ArgMatches) -> Result<Vec<PathBuf>, Failure> {
+    let typed = Typed::<S>::new(matches);
+    let common = CommonArgs::from_arg_matches(matches)?;
+    outcome::check(&common.output)?;
+    let setup = typed.resolve()?;
+    let written = bench::check(&common, &setup, &typed.variants(S::BENCHED))?;
+    shader_folder::check(common.machine.shader_dir())?;
+    if setup.promised_triangles()? < QUICKLY_READ {
+        loading::begin(matches);
+        let loaded = setup.load();
+        loading::end();
+        loaded?;
+    }
+    Ok(written)
+}
+
 /// The files that a bench of these arguments reads; none where they are refused.
 pub fn read_by_bench<S: Study>(matches: &ArgMatches) -> Vec<PathBuf> {
     match (Typed::<S>::new(matches).resolve(), MachineArgs::from_arg_matches(matches)) {
@@ -462,6 +483,7 @@ fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) ->
     let mut read = reading::named(&S::parameters(), &context.setup);
     read.extend(reading::named(&S::options(), &context.options));
     let json = context.destinations.json.iter().filter(|path| path.as_os_str() != "-");
+    json.clone().try_for_each(|path| outcome::check_file(path))?;
     outcome::check_apart(json, &read)?;
     let ended = (verb.run)(&mut context);
     context.say_warnings()?;

@@ -33,6 +33,16 @@ impl Failure {
         }
     }
 
+    /// The same of one of several, which the message begins with.
+    pub fn of(self, whose: &str) -> Self {
+        match self {
+            Failure::Running(message) => Failure::Running(format!("{whose}: {message}")),
+            Failure::Input(message) => Failure::Input(format!("{whose}: {message}")),
+            Failure::NoDevice(message) => Failure::NoDevice(format!("{whose}: {message}")),
+            Failure::Regression => Failure::Regression,
+        }
+    }
+
     /// Prints the error's one line on standard error and gives the exit code.
     pub fn report(self) -> u8 {
         let code = self.code();
@@ -79,9 +89,10 @@ impl From<gpu::Error> for Failure {
         use gpu::Error as E;
         let message = error.to_string();
         match error {
-            E::NoLoader { .. } | E::NoInstance { .. } | E::NoDevice { .. } | E::NoValidationLayer => {
-                Failure::NoDevice(message)
+            E::NoLoader { .. } | E::NoInstance { .. } | E::NoDevice { .. } => {
+                Failure::NoDevice(message + &memory_limit().unwrap_or_default())
             }
+            E::NoValidationLayer => Failure::NoDevice(message),
             E::MissingFeature { .. } => Failure::NoDevice(message),
             E::UnknownDevice { .. }
             | E::AmbiguousDevice { .. }
@@ -89,9 +100,10 @@ impl From<gpu::Error> for Failure {
             | E::Filling { .. }
             | E::Shader { .. }
             | E::Capture { .. } => Failure::Input(message),
-            E::OutOfMemory { .. }
-            | E::Vulkan { .. }
-            | E::Allocation { .. }
+            E::OutOfMemory { .. } | E::Allocation { .. } => {
+                Failure::Running(message + &memory_limit().unwrap_or_default())
+            }
+            E::Vulkan { .. }
             | E::ReadBeforeWrite { .. }
             | E::InUse { .. }
             | E::Foreign { .. }
@@ -103,6 +115,20 @@ impl From<gpu::Error> for Failure {
             | E::Validation { .. } => Failure::Running(message),
         }
     }
+}
+
+/// The limit of this process's memory as the end of a message: where a driver finds too little, it is none to the loader.
+#[cfg(unix)]
+fn memory_limit() -> Option<String> {
+    use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
+    let (bytes, _) = getrlimit(Resource::RLIMIT_AS).ok().filter(|(bytes, _)| *bytes != RLIM_INFINITY)?;
+    Some(format!("; or raise the limit of memory, {} MiB (ulimit -v), which may be too low", bytes >> 20))
+}
+
+/// No other system has that limit.
+#[cfg(not(unix))]
+fn memory_limit() -> Option<String> {
+    None
 }
 
 impl From<Error> for Failure {

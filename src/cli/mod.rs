@@ -87,6 +87,8 @@ struct Paper {
     command: fn() -> clap::Command,
     /// Runs one of its verbs.
     run: fn(&ArgMatches) -> Result<(), Failure>,
+    /// Checks its bench as far as that goes without a device, and lists the files that it writes.
+    check: fn(&ArgMatches) -> Result<Vec<PathBuf>, Failure>,
     /// Lists the files that its bench reads.
     read: fn(&ArgMatches) -> Vec<PathBuf>,
 }
@@ -97,6 +99,7 @@ impl Paper {
             name: S::PAPER,
             command: declared::command::<S>,
             run: declared::run::<S>,
+            check: declared::check_bench::<S>,
             read: declared::read_by_bench::<S>,
         }
     }

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::options::OutputArgs;
 use super::spelling;
 use super::watch::watched;
-use crate::file::{check_writable, destination, write};
+use crate::file::{Sink, check_writable, destination, write};
 use crate::image;
 use crate::measure::Error;
 use crate::measure::estimate::Estimate;
@@ -28,11 +28,16 @@ pub fn style() -> Style {
 }
 
 /// Prints on standard output, which names and files cannot make a terminal obey. A reader that has left, as `head` does, wants no more: that is no failure.
+///
+/// # Errors
+/// [`Failure::Input`] where there is no space; [`Failure::Running`] for an interruption while the reader takes nothing.
 pub fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(escaped(text, true).as_bytes()).and_then(|()| out.flush()) {
+    let written = Sink::stream(io::stdout().lock()).write_all(escaped(text, true).as_bytes());
+    let failed = |e: io::Error| format!("writing to standard output: {e}");
+    match written {
+        Err(e) if e.kind() == ErrorKind::TimedOut => Err(Failure::Running(failed(e))),
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Input(format!("writing to standard output: {e}; send it where there is space")))
+            Err(Failure::Input(format!("{}; send it where there is space", failed(e))))
         }
         _ => Ok(()),
     }

@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::options::MachineArgs;
 use super::outcome;
+use super::watch::{interrupted, patiently};
 use crate::gpu::bindings::Resource;
-use crate::gpu::{Mode, PassInfo};
+use crate::gpu::{self, Mode, PassInfo};
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::study::Study;
@@ -26,8 +27,16 @@ pub fn list<S: Study>(study: &S, variants: &[S::Variant], machine: &MachineArgs,
     let mut machine = Machine::open(&machine.resolve(0), S::NEEDS)?;
     let mut listed = Vec::new();
     for &variant in variants {
-        let mut built = build(&machine, study, &scene, variant)?;
-        let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+        let (built, sample) = patiently(false, &format!("making a frame of {}", variant.as_str()), || {
+            let mut built = build(&machine, study, &scene, variant)?;
+            let sample = machine.recorder.run_unless(interrupted(), Mode::Plain, |frame| built.paper.record(frame, 0));
+            match sample {
+                Err(gpu::Error::Interrupted) => {
+                    Err(Failure::Running("interrupted before all passes were listed".into()))
+                }
+                other => Ok((built, other?)),
+            }
+        })?;
         let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
         let targets = built.paper.targets();
         listed.push(Listed { paper: S::PAPER, variant: variant.as_str(), passes, targets });

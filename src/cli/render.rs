@@ -152,17 +152,20 @@ pub fn draw<S: Study>(
     let is_read = |number: &u32| picture_path(*number).file_name().is_some_and(|name| names.contains(name));
     let numbered = read.iter().filter_map(|path| number_in_name(path)).filter(|number| whole.contains(number));
     let numbered: BTreeSet<u32> = numbered.collect();
-    let drawn: BTreeSet<u32> = [frames.first].into_iter().chain(numbered.into_iter().filter(is_read)).collect();
+    let ends = [frames.first, frames.end - 1];
+    let drawn: BTreeSet<u32> = ends.into_iter().chain(numbered.into_iter().filter(is_read)).collect();
     let mut pictures: Vec<PathBuf> = drawn.into_iter().filter(|_| has_pictures).map(picture_path).collect();
     if arguments.shard.is_some() || arguments.rows.is_some() {
         pictures.extend(pictures.clone().iter().map(|picture| part::beside(picture)));
     }
     let dumps = arguments.dump.iter().map(|dump| &dump.file);
     outcome::check_apart(dumps.chain(&pictures).chain(&arguments.film), &read)?;
+    pictures.iter().try_for_each(|picture| outcome::check_file(picture))?;
     let open = || Machine::open(&arguments.machine.resolve(0), S::NEEDS);
     let loaded = patiently(arguments.quiet, "loading the scene", || load_for(&study, &[variant], open))?;
-    let (Loaded { scene, .. }, mut machine) = loaded;
+    let (Loaded { scene, notes, .. }, mut machine) = loaded;
     outcome::say_device(&output, &machine);
+    notes.iter().for_each(|note| outcome::warn(&output, note));
     let mut part = match arguments.shard.is_some() || arguments.rows.is_some() {
         true => Some(Part::of(&study, variant, &arguments.machine, &machine, whole)?),
         false => None,
@@ -206,7 +209,10 @@ pub fn draw<S: Study>(
             return Ok(None);
         }
         bar.set_message(S::PAPER);
-        let rendered = match picture::render_unless(interrupted(), &mut machine, &mut built.paper, number) {
+        // The first compiles what it draws with; on a terminal the bar shows that it goes on.
+        let is_silent = arguments.quiet || !bar.is_hidden() || bar.position() > 0;
+        let render = || picture::render_unless(interrupted(), &mut machine, &mut built.paper, number);
+        let rendered = match patiently(is_silent, &format!("drawing frame {number}"), render) {
             Err(Error::Gpu(gpu::Error::Interrupted)) => return Ok(None),
             other => other?,
         };

@@ -5,12 +5,13 @@ use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, PoisonError};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::outcome::say;
+use crate::file;
 use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -58,6 +59,7 @@ fn handle_interruptions() {
     // A process has one handler.
     static HANDLER: std::sync::Once = std::sync::Once::new();
     HANDLER.call_once(|| {
+        file::heed(&INTERRUPTED);
         // Without a handler Ctrl-C ends the program, which is the default anyway.
         let _ = ctrlc::set_handler(|| match &*QUIT.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(quit) => quit(),
@@ -88,26 +90,42 @@ const BETWEEN_LINES: Duration = Duration::from_secs(30);
 /// Time after which work without a bar of progress says that it goes on.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Runs work that cannot tell how far it is, and says from time to time that it goes on; nothing when `quiet`.
-pub fn patiently<T>(quiet: bool, what: &str, work: impl FnOnce() -> T) -> T {
-    if quiet {
-        return work();
-    }
-    let started = Instant::now();
-    thread::scope(|scope| {
+/// Says from time to time that work goes on which cannot tell how far it is; until it is dropped.
+struct Patience {
+    /// Ends it when dropped.
+    end: Option<mpsc::Sender<()>>,
+    speaker: Option<JoinHandle<()>>,
+}
+
+impl Patience {
+    fn new(quiet: bool, what: &str) -> Self {
         let (end, ended) = mpsc::channel::<()>();
-        // Without a thread for it nothing is said.
-        let _ = thread::Builder::new().spawn_scoped(scope, move || {
+        let (what, started) = (what.to_owned(), Instant::now());
+        let speak = move || {
             let mut silence = SILENCE;
             while ended.recv_timeout(silence) == Err(RecvTimeoutError::Timeout) {
                 say(&format!("note: {what} goes on, {:.0} s so far", started.elapsed().as_secs_f64()));
                 silence = BETWEEN_LINES;
             }
-        });
-        let result = work();
-        drop(end);
-        result
-    })
+        };
+        // Without a thread for it nothing is said.
+        let speaker = (!quiet).then(|| thread::Builder::new().spawn(speak).ok()).flatten();
+        Patience { end: Some(end), speaker }
+    }
+}
+
+impl Drop for Patience {
+    fn drop(&mut self) {
+        self.end = None;
+        // Its last line is said before what comes next.
+        let _ = self.speaker.take().map(JoinHandle::join);
+    }
+}
+
+/// Runs work that cannot tell how far it is, and says from time to time that it goes on; nothing when `quiet`.
+pub fn patiently<T>(quiet: bool, what: &str, work: impl FnOnce() -> T) -> T {
+    let _patience = Patience::new(quiet, what);
+    work()
 }
 
 /// Lines that tell from time to time how far work is, where there is no terminal for a bar; nothing when quiet.
@@ -131,13 +149,16 @@ impl ProgressLines {
     }
 }
 
-/// Runs measured work under a progress bar. Piped work that takes long says how far it is, a line at a time.
+/// Runs measured work under a progress bar. Piped work that takes long says that it goes on until its first frame is there, and then
+/// how far it is, a line at a time.
 pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> T) -> T {
     let bar = progress_bar(quiet, what);
     let mut lines = ProgressLines::new(quiet);
+    let mut patience = Some(Patience::new(quiet || !bar.is_hidden(), &format!("{what}: the first frame")));
     let result = work(&mut Watch {
         interrupted: interrupted(),
         progress: &mut |done, expected| {
+            patience = None;
             bar.set_length(expected);
             bar.set_position(done);
             lines.tell(|| {
@@ -146,6 +167,7 @@ pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> 
             });
         },
     });
+    drop(patience);
     bar.finish_and_clear();
     result
 }

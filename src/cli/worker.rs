@@ -9,6 +9,8 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use super::declared;
 use super::failure::Failure;
 use super::options::MachineArgs;
+use super::shader_folder;
+use crate::measure::Error;
 use crate::measure::study::Study;
 use crate::window::worker::{self, Start, Typed};
 
@@ -32,6 +34,7 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
         variants: matches.get_many::<String>("variant").into_iter().flatten().cloned().collect(),
         machine,
         exchange: path("exchange").unwrap_or_default(),
+        try_shaders: |folder| shader_folder::check(Some(folder)).map_err(|failure| Error::Input(failure.to_string())),
     };
     Ok(worker::run::<S>(start)?)
 }

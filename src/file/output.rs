@@ -12,6 +12,7 @@ use tempfile::NamedTempFile;
 
 #[cfg(unix)]
 use super::fifo;
+use super::sink::Sink;
 use super::temporary;
 
 /// Failures of writing; every message names the file.
@@ -39,6 +40,12 @@ pub enum OutputError {
         /// Destination, which may not be written.
         path: PathBuf,
     },
+    // The reason first: the path may be longer than a message.
+    #[error("cannot write a file whose path or name is longer than the system takes; shorten {}", .path.display())]
+    TooLong {
+        /// Destination that cannot be.
+        path: PathBuf,
+    },
     #[error(
         "cannot write {}: {source}; name a file in a writable directory with free space", .path.display()
     )]
@@ -48,6 +55,17 @@ pub enum OutputError {
         /// The system's error.
         source: io::Error,
     },
+}
+
+impl OutputError {
+    /// The system's refusal to write `path`.
+    fn of(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::InvalidFilename => OutputError::TooLong { path },
+            _ => OutputError::Write { path, source },
+        }
+    }
 }
 
 /// Writes `bytes` to `path`, whole or not at all.
@@ -66,22 +84,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// As [`write_with()`].
 pub fn write_unsynced(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<Sink<&mut File>>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     let folder = parent(path);
     create_directory(&folder)?;
     temporary::sweep(&folder);
-    replace(path, fill, false).map_err(|source| OutputError::Write { path: path.to_owned(), source })
+    replace(path, fill, false).map_err(|source| OutputError::of(path, source))
 }
 
 /// Fills a temporary file beside `path`, and puts it in its place.
 fn replace(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<Sink<&mut File>>) -> io::Result<()>,
     is_synced: bool,
 ) -> io::Result<()> {
     let mut temporary = create_beside(path)?;
-    buffered(temporary.as_file_mut(), fill)?;
+    buffered(Sink::file(temporary.as_file_mut()), fill)?;
     if is_synced {
         temporary.as_file().sync_all()?;
     }
@@ -95,16 +113,16 @@ fn replace(
 /// As [`write()`]; an error of `fill` counts as a failure to write.
 pub fn write_with(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<Sink<&mut File>>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    let failed = |source| OutputError::Write { path: path.to_owned(), source };
+    let failed = |source| OutputError::of(path, source);
     match Destination::find(path)? {
         Destination::Stream => {
             let unread = || OutputError::Unread { path: path.to_owned() };
             let mut stream = open_stream(path).map_err(failed)?.ok_or_else(unread)?;
-            // Its reader may also leave meanwhile.
-            buffered(&mut stream, fill).map_err(|source| match source.kind() {
-                ErrorKind::BrokenPipe => unread(),
+            // Its reader may also leave meanwhile, or read no more.
+            buffered(Sink::stream(&mut stream), fill).map_err(|source| match source.kind() {
+                ErrorKind::BrokenPipe | ErrorKind::TimedOut => unread(),
                 _ => failed(source),
             })
         }
@@ -122,7 +140,7 @@ pub fn write_with(
 /// # Errors
 /// As [`write()`].
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
-    let failed = |source| OutputError::Write { path: path.to_owned(), source };
+    let failed = |source| OutputError::of(path, source);
     match Destination::find(path)? {
         Destination::Stream => match has_reader(path).map_err(failed)? {
             true => Ok(()),
@@ -132,6 +150,9 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
             let directory = parent(&target);
             let uncreated = |source| OutputError::CreateDirectory { path: directory.clone(), source };
             let there = nearest(&directory).map_err(uncreated)?;
+            if is_name_too_long(&there, &target) {
+                return Err(OutputError::TooLong { path: path.to_owned() });
+            }
             temporary::sweep(&there);
             let made = temporary::create(&there).and_then(NamedTempFile::close);
             made.map_err(|source| if there == directory { failed(source) } else { uncreated(source) })
@@ -150,6 +171,13 @@ fn nearest(directory: &Path) -> io::Result<PathBuf> {
         }
     }
     Ok(PathBuf::from("."))
+}
+
+/// True where a name of the path is longer than the directory that is there takes, as those do that would be made in it.
+fn is_name_too_long(there: &Path, path: &Path) -> bool {
+    let is_too_long =
+        |name| fs::symlink_metadata(there.join(name)).is_err_and(|error| error.kind() == ErrorKind::InvalidFilename);
+    path.strip_prefix(there).unwrap_or(path).iter().any(is_too_long)
 }
 
 /// True for a pipe, which takes what is written to it once and is never replaced.
@@ -192,8 +220,11 @@ fn placed(directory: &Path) -> Option<PathBuf> {
     Some(place)
 }
 
-fn buffered(file: &mut File, fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> io::Result<()> {
-    let mut writer = BufWriter::new(file);
+fn buffered(
+    sink: Sink<&mut File>,
+    fill: impl FnOnce(&mut BufWriter<Sink<&mut File>>) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut writer = BufWriter::new(sink);
     fill(&mut writer)?;
     writer.flush()
 }
@@ -207,14 +238,18 @@ enum Destination {
 
 impl Destination {
     fn find(path: &Path) -> Result<Self, OutputError> {
-        let Ok(metadata) = fs::metadata(path) else {
-            // `Path` forgets a trailing separator, which asks for a directory.
-            if path.as_os_str().as_encoded_bytes().ends_with(b"/") || path.file_name().is_none() {
-                return Err(OutputError::IsDirectory { path: path.to_owned() });
+        let failed = |source| OutputError::of(path, source);
+        let metadata = match fs::metadata(path) {
+            Ok(metadata) => metadata,
+            Err(error) if error.kind() == ErrorKind::InvalidFilename => return Err(failed(error)),
+            Err(_) => {
+                // `Path` forgets a trailing separator, which asks for a directory.
+                if path.as_os_str().as_encoded_bytes().ends_with(b"/") || path.file_name().is_none() {
+                    return Err(OutputError::IsDirectory { path: path.to_owned() });
+                }
+                // A link to what is not there yet makes it there, as a link to an older file replaces that.
+                return Ok(Self::File(followed(path).map_err(failed)?));
             }
-            // A link to what is not there yet makes it there, as a link to an older file replaces that.
-            let target = followed(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
-            return Ok(Self::File(target));
         };
         if metadata.is_dir() {
             return Err(OutputError::IsDirectory { path: path.to_owned() });
@@ -225,8 +260,7 @@ impl Destination {
         if metadata.permissions().readonly() {
             return Err(OutputError::ReadOnly { path: path.to_owned() });
         }
-        let target = fs::canonicalize(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
-        Ok(Self::File(target))
+        Ok(Self::File(fs::canonicalize(path).map_err(failed)?))
     }
 }
 
@@ -349,6 +383,28 @@ mod tests {
         fs::set_permissions(&file, permissions).unwrap();
         let error = check_writable(&file).unwrap_err();
         assert!(matches!(error, OutputError::ReadOnly { .. }), "{error}");
+    }
+
+    /// A file is written under another name first, which every folder takes.
+    #[cfg(unix)]
+    #[test]
+    fn names_that_are_too_long_are_refused_before_the_work() {
+        let root = tempfile::tempdir().unwrap();
+        let long = "n".repeat(300);
+        let deep = ["d"; 3_000].join("/");
+        // The file itself, one in folders that are not there yet, such a folder, and all together.
+        for path in [format!("{long}.json"), format!("new/er/{long}"), format!("new/{long}/a"), deep] {
+            let path = root.path().join(path);
+            let error = check_writable(&path).unwrap_err();
+            assert!(matches!(error, OutputError::TooLong { .. }), "{error}");
+            assert_eq!(entries(root.path()), [""; 0], "{}", path.display());
+        }
+        check_writable(&root.path().join("n".repeat(250))).unwrap();
+        let (path, link) = (root.path().join(&long), root.path().join("link"));
+        std::os::unix::fs::symlink(&long, &link).unwrap();
+        for error in [write(&path, b"x").unwrap_err(), check_writable(&link).unwrap_err()] {
+            assert!(matches!(error, OutputError::TooLong { .. }), "{error}");
+        }
     }
 
     #[cfg(unix)]

@@ -1,9 +1,10 @@
 //! Sizes of a configuration, known before anything of it is allocated.
 
+use super::error::Error;
 use crate::gpu::physical::DeviceType;
-use crate::gpu::{Device, Error};
+use crate::gpu::{self, Device};
 
-/// Most passes of one frame, each with its queries: command buffers of more take gigabytes.
+/// Most passes of one frame, each with its queries: command buffers of more take gigabytes. It is no limit of a device.
 const MOST_PASSES: u64 = 1 << 16;
 
 /// Most draws and dispatches of one frame, for the same reason.
@@ -40,14 +41,15 @@ impl Estimate {
     /// Passes for a configuration that the device can hold.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more bytes than its largest heap has, a longer buffer than it binds, or more passes or draws than
-    /// a frame may have.
+    /// [`gpu::Error::Limit`] for more bytes than its largest heap has and a longer buffer than it binds; [`Error::Input`] for more
+    /// passes or draws than this program records for a frame.
     pub fn check(&self, device: &Device, label: &str) -> Result<(), Error> {
         let memory = &device.physical().memory;
         let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
         let limit = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
         let refused = |what, wanted, limit, parameter: &str| {
-            Err(Error::Limit { object: label.to_owned(), what, wanted, limit }.set_by(parameter))
+            let error = gpu::Error::Limit { object: label.to_owned(), what, wanted, limit };
+            Err(error.set_by(parameter).into())
         };
         let total: f64 = self.bytes.iter().map(|(_, bytes)| bytes).sum();
         if let Some((parameter, _)) = largest(&self.bytes).filter(|_| total > limit as f64) {
@@ -57,13 +59,12 @@ impl Estimate {
         if let Some((parameter, bytes)) = largest(&self.buffers).filter(|(_, bytes)| *bytes > longest as f64) {
             return refused("size in bytes of a storage buffer", bytes as u64, longest, parameter);
         }
-        let recorded = [
-            ("count of passes in a frame", self.passes, MOST_PASSES),
-            ("count of draws and dispatches in a frame", self.draws, MOST_DRAWS),
-        ];
+        let recorded = [("passes", self.passes, MOST_PASSES), ("draws and dispatches", self.draws, MOST_DRAWS)];
         for (what, found, most) in recorded {
             if let Some((parameter, wanted)) = found.filter(|(_, wanted)| *wanted > most) {
-                return refused(what, wanted, most, parameter);
+                let reason =
+                    format!("{wanted} {what} in a frame are more than the {most} that this program records for one");
+                return Err(Error::Input(format!("{label} (`{parameter}`): {reason}; lower it")));
             }
         }
         Ok(())

@@ -56,9 +56,18 @@ impl Drop for Running {
     }
 }
 
+/// The last line of a text, of which no more than its begin is kept.
 fn last_line(text: impl Read) -> Option<String> {
-    let last = BufReader::new(text).split(b'\n').map_while(Result::ok).last()?;
-    Some(String::from_utf8_lossy(&last).trim_end().to_owned())
+    /// Bytes of a line; a library's message may quote a whole file.
+    const LONGEST: u64 = 2_000;
+    let (mut text, mut last, mut line) = (BufReader::new(text), None, Vec::new());
+    while text.by_ref().take(LONGEST).read_until(b'\n', &mut line).is_ok_and(|read_bytes| read_bytes > 0) {
+        let is_cut = !line.ends_with(b"\n") && text.skip_until(b'\n').is_ok_and(|left_bytes| left_bytes > 0);
+        let end = if is_cut { "..." } else { "" };
+        last = Some(format!("{}{end}", String::from_utf8_lossy(&line).trim_end()));
+        line.clear();
+    }
+    last
 }
 
 /// The program with these arguments, and `--json FILE` behind them; and that file.
@@ -186,6 +195,16 @@ mod tests {
             bench.poll(&context);
         }
         assert_eq!(bench.problem.as_deref(), Some("benchmark: out of paper"));
+    }
+
+    #[test]
+    fn of_a_line_without_an_end_the_begin_is_told() {
+        let mut endless = io::Cursor::new(b"first\n").chain(io::repeat(b'x').take(1 << 26));
+        let line = last_line(&mut endless).unwrap();
+        assert!(line.len() < 3_000 && line.capacity() < 10_000 && line.ends_with("xxx..."), "{}", line.len());
+        assert_eq!(last_line(&b"one\ntwo  \n"[..]).as_deref(), Some("two"));
+        assert_eq!(last_line(&b"one\ntwo"[..]).as_deref(), Some("two"));
+        assert_eq!(last_line(&b""[..]), None);
     }
 
     #[test]

@@ -138,7 +138,8 @@ impl AbArgs {
             );
         }
         for (side, own) in sides {
-            if let Some(option) = ["--json", "--out", "--quiet", "-q"].into_iter().find(|option| has(own, option)) {
+            let taken = ["--json", "--out", "--quiet", "-q", "--help", "-h", "--help-all"];
+            if let Some(option) = taken.into_iter().find(|option| has(own, option)) {
                 return refused(format!("{option} in {side}: the output is ab's own; give {option} outside of {side}"));
             }
         }

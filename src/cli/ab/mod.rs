@@ -17,7 +17,8 @@ use serde::Serialize;
 use super::compare::VerdictArgs;
 use super::failure::Failure;
 use super::outcome;
-use super::watch::{interrupted, progress_bar};
+use super::pool;
+use super::watch::{interrupted, patiently, progress_bar};
 use crate::file;
 use crate::measure::compare::{Comparison, Design, Input, LOOKS, compare};
 use crate::measure::shard::Shard;
@@ -77,10 +78,13 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     files.iter().chain([&verdicts]).chain(named.clone()).try_for_each(|path| file::check_writable(path))?;
     // Verdicts that are named as the folder's own are the same.
     let read = [Side::A, Side::B].map(|side| arguments.read(side)).concat();
-    outcome::check_apart(files.iter().chain(named), &read)?;
+    outcome::check_apart(files.iter().chain(named.clone()), &read)?;
     outcome::check_apart([&verdicts], &read)?;
-    let interrupted = interrupted();
     let own = arguments.own_blocks()?;
+    let of_sides = arguments.check_sides()?;
+    outcome::check_apart(files.iter().chain(named).chain(&of_sides), &read)?;
+    outcome::check_apart([&verdicts].into_iter().chain(&of_sides), &read)?;
+    let interrupted = interrupted();
     let bar = progress_bar(arguments.quiet, "blocks A B B A");
     bar.set_length(own.len() as u64);
     let deadline = Instant::now() + Duration::from_secs(arguments.budget);
@@ -163,6 +167,17 @@ fn joined(records: &[Record]) -> Option<Record> {
 }
 
 impl AbArgs {
+    /// Checks both sides before one of them is measured, and lists the files that they write themselves.
+    fn check_sides(&self) -> Result<Vec<PathBuf>, Failure> {
+        pool::start()?;
+        let check = || [Side::A, Side::B].map(|side| self.check(side));
+        match patiently(self.quiet, "checking both sides", check) {
+            [Err(a), Err(b)] if a.to_string() == b.to_string() => Err(a.of("both sides")),
+            [Err(a), _] => Err(a.of("side A")),
+            [Ok(a), b] => Ok([a, b.map_err(|failure| failure.of("side B"))?].concat()),
+        }
+    }
+
     fn record_file(&self, side: Side) -> PathBuf {
         let shard = self.shard.map_or_else(String::new, |shard| format!("-{shard}"));
         self.out.join(format!("ab-{}{shard}.json", if side == Side::A { "a" } else { "b" }))

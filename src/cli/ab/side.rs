@@ -8,9 +8,9 @@ use serde_json::json;
 
 use super::AbArgs;
 use crate::cli::failure::Failure;
-use crate::cli::listed;
 use crate::cli::processes::{OF_THE_FIRST, finish, without};
 use crate::cli::watch::interrupted;
+use crate::cli::{listed, paper_names};
 use crate::content;
 use crate::measure::compare::{Comparison, Difference};
 use crate::report::{Record, json as reader};
@@ -108,6 +108,38 @@ impl AbArgs {
         Ok(arguments.chain(own.iter().map(OsString::from)).collect())
     }
 
+    /// Refuses what a side's bench would refuse before it measures, and lists the files that it writes. Of another build no more is
+    /// known than that it is there.
+    pub fn check(&self, side: Side) -> Result<Vec<PathBuf>, Failure> {
+        let arguments = self.arguments(side)?;
+        if let Some(program) = self.binary(side) {
+            let folders = std::env::var_os("PATH").unwrap_or_default();
+            let is_there = match program.components().count() {
+                1 => std::env::split_paths(&folders).any(|folder| folder.join(program).is_file()),
+                _ => program.is_file(),
+            };
+            // Elsewhere its ending may be left out.
+            if cfg!(unix) && !is_there {
+                let message = format!("{}: there is no such program; name a build of fumarole", program.display());
+                return Err(Failure::Input(message));
+            }
+            return Ok(Vec::new());
+        }
+        let papers = listed();
+        let name = arguments.first().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let Some(paper) = papers.iter().find(|paper| paper.name == name) else {
+            let message = format!("{name}: there is no such paper; name one of {}", paper_names(&papers));
+            return Err(Failure::Input(message));
+        };
+        let matches = (paper.command)().try_get_matches_from(&arguments).map_err(|error| {
+            let text = error.to_string();
+            // Behind the first lines come usage and hints on it.
+            let first = text.split("\n\n").next().unwrap_or_default();
+            Failure::Input(first.strip_prefix("error: ").unwrap_or(first).to_owned())
+        })?;
+        matches.subcommand_matches("bench").map_or(Ok(Vec::new()), paper.check)
+    }
+
     /// The files that a side reads, as far as this program knows its options: those of another build may be others.
     pub fn read(&self, side: Side) -> Vec<PathBuf> {
         let arguments = self.arguments(side).unwrap_or_default();
@@ -161,7 +193,12 @@ impl AbArgs {
         if !ended.status.success() {
             return Err(ended.failure(format!("side {side:?}: {}", ended.message())));
         }
-        Ok(reader::read(file.path())?)
+        reader::read(file.path()).map_err(|_| {
+            let program = program.display();
+            let message =
+                format!("{program} has ended without a record that this program reads; name a build of fumarole");
+            Failure::Input(message).of(&format!("side {side:?}"))
+        })
     }
 }
 

@@ -205,6 +205,12 @@ pub fn run<S: Study>(
     let child_arguments = without(&OURS, std::env::args_os().skip(1));
     let devices: Vec<Option<&String>> =
         if arguments.devices.is_empty() { vec![None] } else { arguments.devices.iter().map(Some).collect() };
+    let of_device = |machine: &MachineArgs| child_arguments.iter().cloned().chain(machine.device_arguments()).collect();
+    // One that is not there is told before the steps on another.
+    for device in &arguments.devices {
+        let arguments_there: Vec<OsString> = of_device(&arguments.machine.on(device));
+        Children::new(&arguments_there, arguments.output.quiet)?.environment()?;
+    }
     let started = Instant::now();
     let budget_s = arguments.limits.budget.unwrap_or(BUDGET_S);
     for (number, device) in devices.iter().enumerate() {
@@ -221,7 +227,7 @@ pub fn run<S: Study>(
             schedule: arguments.schedule(arguments.limits.until),
             limits: &arguments.limits,
             output: &arguments.output,
-            child_arguments: child_arguments.iter().cloned().chain(machine.device_arguments()).collect(),
+            child_arguments: of_device(&machine),
             machine: &machine,
             json: arguments.json.clone(),
             csv: arguments.csv.clone(),
@@ -311,10 +317,11 @@ impl<S: Study> Ascent<'_, S> {
                 json.display()
             )));
         }
-        let file = File::new(json.clone());
-        let left = file.left(self.limits.anew)?;
+        // Where there can be no record, none is gone on with.
         check_writable(&json)?;
         outcome::check_file(&csv)?;
+        let file = File::new(json.clone());
+        let left = file.left(self.limits.anew)?;
         let record = self.climb(file, left, budget_s)?;
 
         let files = outcome_files(&record, &self.stem(), &self.output.out, csv);

@@ -20,7 +20,7 @@ mod times;
 mod wanted;
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use ash::vk;
@@ -49,6 +49,8 @@ pub struct Start {
     pub machine: MachineOptions,
     /// The file for pictures.
     pub exchange: PathBuf,
+    /// Tries in another process whether the compilers live through a folder of shaders, as they did through the one of the start.
+    pub try_shaders: fn(&Path) -> Result<(), Error>,
 }
 
 /// A picture is shown at least this long while the clock plays.
@@ -74,7 +76,7 @@ pub fn run<S: Study>(start: Start) -> Result<(), Error> {
         named => named.iter().take(2).map(|name| side(Some(name.clone()))).collect(),
     };
     let choice = Choice { preset: start.preset, typed: start.typed, sides };
-    let shaders = Shaders::open(&machine, start.machine.shader_dir.clone(), &inbox);
+    let shaders = Shaders::open(&machine, start.machine.shader_dir.clone(), start.try_shaders, &inbox);
     let folder = start.machine.shader_dir.as_ref().map(|folder| folder.display().to_string());
     outbox.tell(&Event::Ready(describe::ready::<S>(&machine, folder, gpu::RenderDoc::attach().is_ok())));
     let mut state = State::<S>::new(machine, start.machine, shaders, choice, outbox, inbox, exchange);

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::inbox::Inbox;
-use crate::gpu::{Compiler, Device, Error, ShaderLibrary};
+use crate::gpu::{Compiler, Device, ShaderLibrary};
+use crate::measure::Error;
 use crate::measure::machine::Machine;
 
 /// Libraries that were replaced.
@@ -16,6 +17,7 @@ pub struct Libraries(Vec<(Compiler, Arc<ShaderLibrary>)>);
 pub struct Shaders {
     device: Arc<Device>,
     folder: Option<PathBuf>,
+    try_folder: fn(&Path) -> Result<(), Error>,
     made: Vec<(Compiler, Arc<ShaderLibrary>)>,
     /// Watches as long as it is there.
     _watcher: Option<RecommendedWatcher>,
@@ -24,28 +26,42 @@ pub struct Shaders {
 }
 
 impl Shaders {
-    /// Watches the folder, and puts [`saved`](super::saved) into the inbox when a file in it changes.
-    pub fn open(machine: &Machine, folder: Option<PathBuf>, inbox: &Inbox) -> Self {
+    /// Watches the folder, and puts [`saved`](super::saved) into the inbox when a file in it changes. Before it is compiled anew it
+    /// is tried.
+    pub fn open(
+        machine: &Machine,
+        folder: Option<PathBuf>,
+        try_folder: fn(&Path) -> Result<(), Error>,
+        inbox: &Inbox,
+    ) -> Self {
         let watching = folder.as_deref().map(|folder| watch(folder, inbox.clone()));
         let (watcher, trouble) = match watching {
             None => (None, None),
             Some(Ok(watcher)) => (Some(watcher), None),
             Some(Err(error)) => (None, Some(format!("watching the shaders: {error}; ask for a reload instead"))),
         };
-        Shaders { device: machine.device.clone(), folder, made: Vec::new(), _watcher: watcher, trouble }
+        Shaders { device: machine.device.clone(), folder, try_folder, made: Vec::new(), _watcher: watcher, trouble }
     }
 
     /// The library of a compiler.
     ///
     /// # Errors
-    /// [`Error::Shader`] with file and line for a shader of the folder that does not compile.
+    /// With file and line for a shader of the folder that does not compile.
     pub fn of(&mut self, compiler: Compiler) -> Result<Arc<ShaderLibrary>, Error> {
         if let Some((_, library)) = self.made.iter().find(|(made, _)| *made == compiler) {
             return Ok(library.clone());
         }
+        if !self.made.is_empty() {
+            self.try_folder()?;
+        }
         let library = Arc::new(ShaderLibrary::new(&self.device, compiler, self.folder.as_deref())?);
         self.made.push((compiler, library.clone()));
         Ok(library)
+    }
+
+    /// Tries the folder, which was tried when the worker was started.
+    fn try_folder(&self) -> Result<(), Error> {
+        self.folder.as_deref().map_or(Ok(()), self.try_folder)
     }
 
     /// Compiles the libraries anew, and gives the ones that they take the place of.
@@ -53,6 +69,7 @@ impl Shaders {
     /// # Errors
     /// As [`Shaders::of`]; the libraries are then as they were.
     pub fn reload(&mut self) -> Result<Libraries, Error> {
+        self.try_folder()?;
         let compiled = |(compiler, _): &(Compiler, _)| {
             let library = ShaderLibrary::new(&self.device, *compiler, self.folder.as_deref())?;
             Ok::<_, Error>((*compiler, Arc::new(library)))

@@ -315,7 +315,7 @@ impl<S: Study> State<S> {
                     self.replaced.get_or_insert((libraries, self.made.take()));
                     self.needs_build = true;
                 }
-                Err(error) => return self.fail(id, error.into()),
+                Err(error) => return self.fail(id, error),
             },
             Request::Taken(serial) => {
                 self.taken = self.taken.max(*serial);

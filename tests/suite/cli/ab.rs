@@ -76,6 +76,42 @@ fn a_side_may_be_another_program_and_failures_name_the_side() {
     assert!(!out.path().join("ab-a.json").exists(), "nothing was measured");
 }
 
+/// Side A, which comes first, would fail as soon as it is measured.
+#[test]
+fn both_sides_are_checked_before_one_is_measured() {
+    let out = folder();
+    let with = |option: &str| common(fumarole("ab --quiet").arg("--a=--device none").arg(option).inside(out.path()));
+    for (options, part) in [
+        ("--planes 0", "--planes 0"),
+        ("--plains 3", "unexpected argument '--plains' found"),
+        ("--variant no", "[possible values: "),
+        ("--mesh no-such.obj", "no-such.obj"),
+        ("--shader-dir no-such", "no-such"),
+        ("--image no.exr", "no.exr"),
+        ("--trace /proc/no/a", "/proc/no"),
+    ] {
+        with(&format!("--b={options}")).run().refused(2, &["error: side B: ", part]);
+    }
+    for binary in ["B:no-such-program", "B:./nowhere"] {
+        with(&format!("--binary={binary}")).run().refused(2, &["error: side B: ", &binary[2..], "build of fumarole"]);
+    }
+    with("--b=--help").run().refused(2, &["--help in --b"]);
+    let picture = common(fumarole("ab --quiet").arg("--a=--image a.png").arg("--b=--trace ./a.png").inside(out.path()));
+    picture.run().refused(2, &["./a.png: two outputs"]);
+    let both = |arguments: &str| fumarole("ab --quiet").args(arguments).inside(out.path()).run();
+    both("gass").refused(2, &["error: both sides: gass: there is no such paper; name one of lava, gas"]);
+    both("caustics --plains 3").refused(2, &["error: both sides: unexpected argument '--plains'"]);
+    assert!(entries(out.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_program_that_leaves_no_record_is_named_with_its_side() {
+    let out = folder();
+    let program = fumarole("ab --quiet --binary A:/bin/true --out").arg(out.path());
+    common(program).run().refused(2, &["error: side A: /bin/true ", "without a record", "build of fumarole"]);
+}
+
 /// Hardly anything is as far from 1 as this margin: a look decides, the one after 10 blocks where the machine is quiet, and no
 /// block follows it. Of 5 blocks none can at its part of the error.
 #[test]

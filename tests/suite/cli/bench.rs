@@ -319,6 +319,8 @@ fn fresh_processes_are_numbered_and_the_first_writes_the_picture() {
 #[test]
 fn a_fresh_process_that_fails_says_it_once() {
     caustics("bench --processes 2 --mesh no-such.obj").tiny().args(ONCE).run().refused(2, &["no-such.obj"]);
+    let nowhere = caustics("bench --processes 2").tiny().args(ONCE).env("TMPDIR", "/no/such");
+    nowhere.run().refused(1, &["a temporary file in /no/such: it is no folder", "TMPDIR"]);
 }
 
 /// The mesh goes when the first process has measured it and writes its picture: the last cannot read it, and those before

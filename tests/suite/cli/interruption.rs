@@ -252,23 +252,38 @@ fn a_closed_terminal_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() 
 }
 
 /// A frame of 4e12 weights, and the hundred steps to one of a fluid of 200,000 particles, which is minutes and more: they are
-/// given up half-way.
+/// given up half-way. The first says meanwhile that it goes on.
 #[test]
 fn term_ends_a_picture_within_its_frame() {
-    let of_weights = "--variant gpu-driven --density 4096x4x1024 --radius 0.5";
-    let of_steps = "--simulation sph --particles 200000 --substeps 100 --frame 9";
-    for options in [of_weights, of_steps] {
+    let of_weights = ("--variant gpu-driven --density 4096x4x1024 --radius 0.5", 13, "drawing frame 0 goes on");
+    let of_steps = ("--simulation sph --particles 200000 --substeps 100 --frame 9", 0, "");
+    for (options, wait_s, told) in [of_weights, of_steps] {
         let out = folder();
         let program = lava("render --size 64x48 --image a.png").args(options);
         let mut running = program.on_test_device().inside(out.path()).start();
         // By then it has begun.
         wait_until(&mut running, |id| computed_s(id) >= 4);
+        thread::sleep(Duration::from_secs(wait_s));
         assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
         let pressed = Instant::now();
         let ended = running.end();
         assert!(pressed.elapsed() < SOON, "{options}: it took {:?} to end", pressed.elapsed());
+        assert!(ended.stderr.contains(told), "{options}: {}", ended.stderr);
         assert_eq!(ended.status.code(), Some(1), "{options}: {}", ended.stderr);
         assert!(ended.stderr.contains("interrupted before a picture was written"), "{options}: {}", ended.stderr);
         assert_eq!(entries(out.path()), [""; 0], "{options}");
     }
+}
+
+#[test]
+fn term_ends_a_list_of_passes_within_its_frame() {
+    let list = lava("passes --variant gpu-driven --size 64x48 --density 4096x4x1024 --radius 0.5");
+    let mut running = list.on_test_device().start();
+    wait_until(&mut running, |id| computed_s(id) >= 4);
+    assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
+    let pressed = Instant::now();
+    let ended = running.end();
+    assert!(pressed.elapsed() < SOON, "it took {:?} to end", pressed.elapsed());
+    assert_eq!((ended.status.code(), ended.stdout.as_str()), (Some(1), ""), "{}", ended.stderr);
+    assert!(ended.stderr.contains("interrupted before all passes were listed"), "{}", ended.stderr);
 }

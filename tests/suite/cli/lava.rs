@@ -117,6 +117,13 @@ fn objects_stand_in_the_picture_and_in_the_record() {
     small("render --object broken.obj").inside(out.path()).run().refused(2, &["broken.obj", "line 2"]);
 }
 
+/// No device limits them.
+#[test]
+fn more_passes_than_the_program_records_are_refused() {
+    let render = small("render --quiet").args("--density 4x400000x4 --particles 10");
+    render.run().refused(2, &["--density", "300016 passes in a frame", "the 65536 that this program records"]);
+}
+
 #[test]
 fn a_frame_is_the_same_alone_and_in_a_range() {
     let out = folder();

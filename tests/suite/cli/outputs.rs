@@ -43,6 +43,24 @@ fn a_destination_that_cannot_be_written_is_refused_before_the_work() {
     dump.run().refused(2, &["folder.png"]);
 }
 
+/// Its longest name, too, that of the part beside the last picture.
+#[test]
+fn a_name_that_is_too_long_is_refused_before_the_work() {
+    let out = folder();
+    let name = |length: usize| format!("{}.png", "n".repeat(length - 4));
+    for option in ["json", "csv", "trace", "image"] {
+        for path in [name(256), format!("new/{}", name(256)), format!("{}/a.png", name(256))] {
+            let told = "longer than the system takes; shorten ";
+            long(out.path()).arg(format!("--{option}={path}")).run().refused(2, &[told, &path]);
+        }
+    }
+    for (options, length) in [("--frame 0..100000", 251), ("--rows 0..4", 240)] {
+        let program = caustics("render --device none").args(options).arg("--image").arg(name(length));
+        program.inside(out.path()).run().refused(2, &["longer than the system takes"]);
+    }
+    assert!(entries(out.path()).is_empty());
+}
+
 /// A file would else take the place of one that was written before it, or that was read.
 #[test]
 fn outputs_that_are_one_file_or_an_input_are_refused() {

@@ -1,8 +1,17 @@
 //! Standard output and standard error: pipes, terminals, and readers that have left.
 
-use std::fs;
+use std::fs::{self, File};
+use std::os::fd::AsFd;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::fcntl::{FcntlArg, fcntl};
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use super::program::{ONCE, Program, caustics, entries, folder};
 
@@ -108,6 +117,43 @@ fn a_reader_that_leaves_is_no_failure() {
     in_shell(&deaf, out.path());
     assert_eq!(fs::read_to_string(out.path().join("code")).unwrap(), "0\n");
     assert!(out.path().join("a.csv").exists());
+}
+
+/// A pipe that is full, of which nobody reads any more: the system would wait for that, deaf to signals.
+#[test]
+fn a_reader_that_takes_nothing_is_given_up_after_an_interruption() {
+    let out = folder();
+    let pipe = out.path().join("pipe.y4m");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let end = |writes: bool| {
+        File::options().read(!writes).write(writes).custom_flags(nix::libc::O_NONBLOCK).open(&pipe).unwrap()
+    };
+    let is_full = || {
+        let writer = end(true);
+        poll(&mut [PollFd::new(writer.as_fd(), PollFlags::POLLOUT)], PollTimeout::ZERO).unwrap() == 0
+    };
+    let film = caustics("render --frame 0..1000000 --film pipe.y4m").tiny().for_shell();
+    let printed = format!("{} >pipe.y4m", caustics("passes --json --variant all").tiny().for_shell());
+    for (command, code, told) in
+        [(film, 2, "pipe.y4m: it is a pipe that no one reads"), (printed, 1, "standard output")]
+    {
+        let reader = end(false);
+        fcntl(&reader, FcntlArg::F_SETPIPE_SZ(4096)).unwrap();
+        let mut shell = Command::new("sh");
+        shell.arg("-c").arg(format!("exec {command}")).current_dir(out.path()).stderr(Stdio::piped());
+        let mut program = shell.spawn().unwrap();
+        while !is_full() {
+            assert_eq!(program.try_wait().unwrap(), None, "{command}: it has ended before the pipe was full");
+            thread::sleep(Duration::from_millis(20));
+        }
+        kill(Pid::from_raw(program.id() as i32), Signal::SIGTERM).unwrap();
+        let told_at = Instant::now();
+        let ended = program.wait_with_output().unwrap();
+        assert!(told_at.elapsed() < Duration::from_secs(30), "{command}: {:?}", told_at.elapsed());
+        let stderr = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{stderr}");
+        assert!(stderr.contains(told), "{stderr}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use super::program::{Program, caustics, device, entries, file, folder, gas, lava, read_json, terrain};
+use super::program::{Program, caustics, device, entries, file, folder, fumarole, gas, lava, read_json, terrain};
 use super::stress::{assert_schema, kinds, record, steps};
 use super::terrain::canyon;
 use crate::drivers::driver_manifest;
@@ -66,6 +66,25 @@ fn a_pipe_is_no_place_for_what_is_written_after_every_step() {
         program.run().refused(2, &["writing pipe: it is a pipe", "one record", "name a regular file", "--json -"]);
     }
     assert_eq!(entries(out.path()), ["pipe"]);
+}
+
+#[test]
+fn a_device_that_is_not_there_is_told_before_the_steps_on_another() {
+    let out = folder();
+    let program = one_step().args("--out . --devices").arg(format!("{},no-such", device())).inside(out.path());
+    program.run().refused(2, &["\"no-such\" names none of"]);
+    assert_eq!(entries(out.path()), [""; 0]);
+}
+
+#[test]
+fn a_file_in_place_of_the_folder_is_no_record_to_go_on_with() {
+    let out = folder();
+    file(&out, "file", "");
+    for program in [one_step(), fumarole("stress")] {
+        let ended = program.args("--device none --out file").inside(out.path()).run();
+        assert!(!ended.stderr.contains("--anew"), "{}", ended.stderr);
+        ended.refused(2, &["cannot create the directory file"]);
+    }
 }
 
 /// A mesh that no device of the least heap holds is refused before a mesh is divided, which would take gigabytes.

@@ -202,6 +202,7 @@ fn bodies_that_are_none_are_refused() {
         ("--sphere 1,2,3,-4", &["--sphere", "radius"]),
         ("--segment 1e9,0,0,0,0,0", &["--segment", "100000 km"]),
         ("", &["--segment", "--sphere"]),
+        ("--json .", &[".: it is a directory"]),
     ] {
         terrain("collide --resolution 16").args(body).run().refused(2, parts);
     }

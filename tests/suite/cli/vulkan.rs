@@ -1,5 +1,7 @@
 //! Exit code 3 where the machine lacks something; and the validation layer.
 
+use std::process::Command;
+
 use super::program::{ONCE, Program, caustics, device, file, folder, fumarole};
 
 /// Every verb that needs a device.
@@ -28,6 +30,19 @@ fn without_a_driver_every_verb_ends_with_3() {
         let program = program.env("VK_DRIVER_FILES", "/no-such").env("VK_ICD_FILENAMES", "/no-such");
         program.run().refused(3, &["driver"]);
     }
+}
+
+/// A driver that finds too little memory is none to the loader.
+#[test]
+fn a_limit_of_memory_is_told_where_there_is_no_driver() {
+    let out = folder();
+    let limited = format!("ulimit -v 8388608; exec {}", fumarole("devices").for_shell());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &limited]).env("VK_DRIVER_FILES", "/no-such").env("VK_ICD_FILENAMES", "/no-such");
+    let ended = shell.current_dir(out.path()).output().unwrap();
+    let stderr = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!((ended.status.code(), stderr.lines().count()), (Some(3), 1), "{stderr}");
+    assert!(stderr.contains("driver") && stderr.contains("8192 MiB (ulimit -v)"), "{stderr}");
 }
 
 #[test]
