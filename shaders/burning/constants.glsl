@@ -39,6 +39,7 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     float embers; // 1 where char glows while it burns, else 0
     float setting_per_tick; // share of its motion that wax loses once the fire has ended
     float last_radius; // of the boundary when the last vertex has burnt out
+    float ground_y; // lowest height that is drawn
 } constants;
 
 // Areas of the heat boundary, from the outside in (3.3, 4.3).

@@ -20,7 +20,7 @@ layout(location = 0) out vec4 shaded;
 const vec3 GROUND = vec3(0.15, 0.14, 0.13);
 const vec3 ASH_COLOR = vec3(0.42, 0.41, 0.4);
 
-// Triangles over a cell, by a quadratic B-spline of the 3 x 3 cells around.
+// Parts of triangles over a cell, by a quadratic B-spline of the 3 x 3 cells around.
 float ash_at(vec2 xz) {
     vec2 at = ash_coordinates(xz);
     ivec2 middle = ivec2(floor(at));
@@ -39,7 +39,7 @@ float ash_at(vec2 xz) {
 void main() {
     float cell_width = 2.0 * ASH_HALF_WIDTH / float(ASH_CELLS);
     // How many times the triangles that came down would cover the cell, about.
-    float layers = 0.43 * ash_at(position.xz) * constants.mean_edge * constants.mean_edge / (cell_width * cell_width);
+    float layers = 0.43 / float(ASH_PARTS) * ash_at(position.xz) * constants.mean_edge * constants.mean_edge / (cell_width * cell_width);
     float grain = 0.6 + 0.8 * noise(position.xz * 160.0);
     float covered = 1.0 - exp(-0.5 * layers * grain);
     vec3 ground = GROUND * (0.9 + 0.2 * noise(position.xz * 24.0));

@@ -31,14 +31,27 @@ layout(set = 0, binding = 71, std430) buffer Ash {
     uint ash[];
 };
 
+// Place of a corner, cells.
+vec2 above(uint vertex) {
+    return ash_coordinates(posed(vertex, new_state[vertex].position).xz);
+}
+
+// In the middles of the triangles that its own is cut into, in rows of 1, 3, 5 and 7.
 void leave_ash(uvec3 at) {
-    vec3 sum = vec3(0.0);
-    for (uint corner = 0u; corner < 3u; corner++) {
-        sum += posed(at[corner], new_state[at[corner]].position);
-    }
-    ivec2 cell = ivec2(floor(ash_coordinates(sum.xz / 3.0)));
-    if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(ASH_CELLS)))) {
-        atomicAdd(ash[cell.y * ASH_CELLS + cell.x], 1u);
+    vec2 a = above(at.x);
+    vec2 b = above(at.y);
+    vec2 c = above(at.z);
+    const float rows = sqrt(float(ASH_PARTS));
+    for (uint part = 0u; part < ASH_PARTS; part++) {
+        uint row = uint(sqrt(float(part) + 0.5));
+        uint place = part - row * row;
+        float inward = place % 2u == 0u ? 1.0 / 3.0 : 2.0 / 3.0;
+        float from_a = (float(row) + 1.0 - inward) / rows;
+        float towards_c = (float(place / 2u) + inward) / rows;
+        ivec2 cell = ivec2(floor(a + from_a * (b - a) + towards_c * (c - b)));
+        if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(ASH_CELLS)))) {
+            atomicAdd(ash[cell.y * ASH_CELLS + cell.x], 1u);
+        }
     }
 }
 #endif

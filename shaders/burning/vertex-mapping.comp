@@ -64,6 +64,8 @@ void main() {
 #ifdef OBJECT_PARTS
     position = posed(vertex, position);
 #endif
+    // Gravity and the turn of blocks know no ground.
+    position.y = max(position.y, constants.ground_y);
     bool has_moved = shown.since == 0u || position != mapped[vertex].position;
     mapped[vertex] = MappedVertex(position, now.left / max(flammability_of(vertex), 1.0));
     uint from = incidence_offsets[vertex];

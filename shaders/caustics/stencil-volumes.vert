@@ -9,11 +9,18 @@
 
 layout(location = 0) flat out uint volume;
 
-// Distance of the sides beyond the volume, so that rounding does not decide what is inside: a fraction of the water triangle.
+// Distance of the sides beyond the volume, so that rounding does not decide what is inside: a fraction of the water triangle. What
+// the device rounds in the picture adds that of `volumes`.
 const float SLACK = 0.02;
 
 vec2 place_at(Ray ray, float height) {
     return ray.origin.xz + ray.slope * (ray.origin.y - height);
+}
+
+vec4 clip_place(vec2 place, float height) {
+    vec3 along = vec3(place.x + volumes.reference_u, height + volumes.reference_v, place.y + volumes.reference_w);
+    vec3 world = volumes.u * along.x + volumes.v * along.y + volumes.w * along.z;
+    return volumes.view_projection * vec4(world, 1.0);
 }
 
 float cross_2d(vec2 a, vec2 b) {
@@ -51,16 +58,16 @@ void main() {
     vec2 base = place_at(here, height);
     vec2 to_next = place_at(next, height) - base;
     vec2 to_last = place_at(last, height) - base;
-    float reach_a = max(0.0, max(dot(outwards_a, to_next), dot(outwards_a, to_last))) + SLACK * abs(twice_area);
-    float reach_b = max(0.0, max(dot(outwards_b, to_next), dot(outwards_b, to_last))) + SLACK * abs(twice_area);
+    float slack_m = volumes.slack * max(clip_place(base, height).w, 0.0);
+    float slack_a = SLACK * abs(twice_area) + slack_m * length(towards);
+    float slack_b = SLACK * abs(twice_area) + slack_m * length(back);
+    float reach_a = max(0.0, max(dot(outwards_a, to_next), dot(outwards_a, to_last))) + slack_a;
+    float reach_b = max(0.0, max(dot(outwards_b, to_next), dot(outwards_b, to_last))) + slack_b;
 
     // Without light all corners are one, and the prism has no fragments.
-    vec3 point = vec3(0.0);
+    gl_Position = clip_place(vec2(0.0), 0.0);
     if (twice_area != 0.0 && min(here.enters, min(next.enters, last.enters)) > 0.0) {
         vec2 meet = (reach_a * back - reach_b * towards) / abs(twice_area);
-        point = vec3(base.x + meet.x, height, base.y + meet.y);
+        gl_Position = clip_place(base + meet, height);
     }
-    vec3 along = point + vec3(volumes.reference_u, volumes.reference_v, volumes.reference_w);
-    vec3 world = volumes.u * along.x + volumes.v * along.y + volumes.w * along.z;
-    gl_Position = volumes.view_projection * vec4(world, 1.0);
 }

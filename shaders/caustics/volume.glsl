@@ -21,6 +21,7 @@ layout(set = 0, binding = 2) uniform Volumes {
     vec3 intensity; // of the light, linear RGB
     float absorption_per_m; // K of eq. 4-17
     float bottom; // height along V below every receiver, from the reference point, metres
+    float slack; // distance of a prism's sides beyond its volume, of that from the eye
 } volumes;
 
 uint water_vertex(uint triangle, uint corner) {

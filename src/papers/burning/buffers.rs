@@ -54,7 +54,7 @@ host_block! {
         embers: f32,
         setting_per_tick: f32,
         last_radius: f32,
-        _pad: f32,
+        ground_y: f32,
     }
 }
 
@@ -427,8 +427,14 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         embers: if is_natural && (p.chars(variant) || p.materials.is_some()) { 1.0 } else { 0.0 },
         setting_per_tick: if is_natural { (tick_s / f64::from(p.setting_s)) as f32 } else { 0.0 },
         last_radius: last_radius(variant, p, model),
-        _pad: 0.0,
+        ground_y: ground_y(p, model),
     }
+}
+
+/// Lowest height that is drawn: the ground's by the natural look, where all of the object lies on it or above.
+fn ground_y(parameters: &Parameters, model: &Model) -> f32 {
+    let stands = parameters.look == Look::Natural && model.floor <= model.bounds.min.y;
+    if stands { model.floor } else { f32::MIN }
 }
 
 /// Radius of the boundary when the last vertex has burnt out, if it never halts.

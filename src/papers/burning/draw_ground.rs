@@ -15,7 +15,7 @@ const ASH_CELLS: usize = 128;
 /// Of the ash, and of its copy at the start.
 pub(super) const BYTES: u32 = 2 * 4 * (ASH_CELLS * ASH_CELLS) as u32;
 
-/// Counts of triangles that have come down on each cell of the ground; none before the fire.
+/// Counts of parts of triangles that have come down on each cell of the ground; none before the fire.
 ///
 /// # Errors
 /// Those of the Vulkan layer.

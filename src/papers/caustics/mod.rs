@@ -63,7 +63,7 @@ use std::slice;
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use self::bounding_box::Axes;
 use self::culled_map::CELL_FLOATS;
@@ -146,7 +146,8 @@ impl Caustics {
         let context = Context { shaders, label, parameters, nearest: &nearest };
         let receivers =
             inputs.iter().map(|input| Receiver::new(context, input).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
-        let center = world_center(&receivers);
+        let bounds = world_bounds(&receivers);
+        let center = bounds.center().as_dvec3();
         let index = f64::from(parameters.refraction_index);
         let axes: Vec<Axes> = parameters.lights.iter().map(|light| Axes::aligned_with(light, center, index)).collect();
         let mut lit_receivers: Vec<LitReceiver> = (0..axes.len())
@@ -169,7 +170,7 @@ impl Caustics {
             .map(|(light, axes)| IlluminationVolumes::new(context, &water_surface, light, axes))
             .collect::<Result<Vec<_>, _>>()?;
         let depth_format = if variant == Variant::Stencil { DEPTH_STENCIL } else { DEPTH };
-        let underwater = Underwater::new(context, depth_format)?;
+        let underwater = Underwater::new(context, depth_format, bounds)?;
         let view = View::new(context, &underwater, &water_surface, inputs)?;
         let (water, volumes) = (&water_surface, &illumination_volumes);
         // The stencil method knows no occlusion.
@@ -329,9 +330,8 @@ impl Caustics {
     }
 }
 
-fn world_center(receivers: &[Arc<Receiver>]) -> DVec3 {
-    let points = receivers.iter().flat_map(|r| r.positions.iter().copied());
-    Bounds::of_points(points).center().as_dvec3()
+fn world_bounds(receivers: &[Arc<Receiver>]) -> Bounds {
+    Bounds::of_points(receivers.iter().flat_map(|r| r.positions.iter().copied()))
 }
 
 /// A target's name, with the indices of its light and receiver when one of them is not the first.

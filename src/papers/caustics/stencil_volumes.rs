@@ -22,6 +22,10 @@ const VOLUME_VERTICES: u32 = 24;
 /// Distance of the volumes' bottom below every receiver, as a fraction of their depth.
 const BELOW: f64 = 0.1;
 
+/// By which the sides of a prism lie beyond its volume in the picture, pixels: twice the step that devices round places to,
+/// a sixteenth of a pixel at most.
+const SLACK_PIXELS: f32 = 0.125;
+
 host_block! {
     pub struct VolumesBlock {
         view_projection: [f32; 16],
@@ -34,7 +38,8 @@ host_block! {
         intensity: [f32; 3],
         absorption_per_m: f32,
         bottom: f32,
-        _pad: [f32; 3],
+        slack: f32,
+        _pad: [f32; 2],
     }
 }
 
@@ -69,7 +74,8 @@ impl StencilVolumes {
             intensity: volumes.intensity.to_array(),
             absorption_per_m: context.parameters.absorption_per_m,
             bottom: (lowest - BELOW * lowest.abs()) as f32,
-            _pad: [0.0; 3],
+            slack: slack(underwater),
+            _pad: [0.0; 2],
         };
         let uniform = context.upload("volumes", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let (vertex, fragment) = ("caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag");
@@ -95,6 +101,7 @@ impl StencilVolumes {
     pub fn set_drawn(&mut self, parameters: &Parameters, underwater: &Underwater) -> Result<(), Error> {
         self.block.absorption_per_m = parameters.absorption_per_m;
         self.block.view_projection = underwater.view_projection.to_cols_array();
+        self.block.slack = slack(underwater);
         update(&self.volumes, bytemuck::bytes_of(&self.block))
     }
 
@@ -111,4 +118,10 @@ impl StencilVolumes {
             }
         })
     }
+}
+
+/// Of a metre's distance from the eye, metres.
+fn slack(underwater: &Underwater) -> f32 {
+    let pixels = underwater.color.height() as f32 / 2.0 * underwater.view_projection.row(1).truncate().length();
+    SLACK_PIXELS / pixels
 }

@@ -21,7 +21,18 @@ impl Caustics {
     pub(super) fn doubts(&self) -> Vec<String> {
         let unheeded = unheeded(&self.parameters, &self.given, self.variant);
         let still = unheeded_by_map(&self.parameters, &self.given);
-        self.small_map().into_iter().chain(self.folded_light()).chain(unheeded).chain(still).collect()
+        self.dry().into_iter().chain(self.small_map()).chain(self.folded_light()).chain(unheeded).chain(still).collect()
+    }
+
+    /// Receivers rise out of the water.
+    fn dry(&self) -> Option<String> {
+        let above_m = f64::from(self.underwater.bounds.max.y) - LEVEL_M;
+        (above_m > 0.0).then(|| {
+            format!(
+                "the receivers reach {above_m:.2} m above the water's level, where none of them is lit, nor seen from above; a \
+                 greater `water-depth` covers them"
+            )
+        })
     }
 
     /// The light that reaches the receivers passes water beyond the border of a height map.

@@ -93,11 +93,12 @@ impl TileFile {
         // Before the key: what it tells of is read after this.
         let state_before = state()?;
         let Some(folder) = folder else {
+            let untaken = |error: io::Error| Error::Input(format!("`map` {}: its tiles: {error}", name.display()));
             let failed = |error: io::Error| {
                 let reason = "name a folder with room in TMPDIR";
                 Error::Input(format!("`map` {}: its tiles need a temporary file: {error}; {reason}", name.display()))
             };
-            let mut temporary = file::temporary().map_err(failed)?;
+            let mut temporary = file::temporary().map_err(untaken)?;
             let source = source()?;
             let mut wrong = None;
             let mut out = BufWriter::new(temporary.as_file_mut());

@@ -9,7 +9,7 @@ use fumarole::papers::burning::reference::refinement::Pattern;
 use fumarole::papers::burning::reference::{Node, State, boundary};
 use fumarole::papers::burning::{Heat, Look, Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, UVec2, Vec2, Vec3};
 
 use super::dump;
 use super::fire::{Fire, text};
@@ -316,6 +316,25 @@ fn melting() {
     let sources = vec![Vec3::new(0.0, 0.2, 0.25), Vec3::new(-0.2, 0.1, 0.0)];
     let parameters = Parameters { levels: Some(3), sources, ..parameters() };
     compare(Variant::Melting, &parameters, &shapes::cuboid());
+}
+
+/// By the natural look alone; the text knows no ground.
+#[test]
+fn what_lies_on_the_ground_is_not_drawn_below_it() {
+    let sheet = with_triangles(&shapes::plane(Vec2::ONE, UVec2::ONE), 1500);
+    for look in [Look::Natural, Look::Dissertation] {
+        let parameters = Parameters { look, heat: Some(Heat::Air), collapse: false, ..parameters() };
+        gpu_test(|device| {
+            let mut fire = Fire::new(device, Variant::Shell, &parameters, &sheet);
+            fire.ticks(199);
+            fire.frame(199);
+            let state = dump::state(&fire, true);
+            let lowest = |places: &[DVec3]| places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+            let [simulated, drawn] = [&state.positions, &state.mapped].map(|places| lowest(places));
+            assert!(simulated < -0.005, "{look:?}: {simulated}");
+            assert_eq!(drawn > -1e-6, look == Look::Natural, "{look:?}: {drawn}");
+        });
+    }
 }
 
 #[test]

@@ -11,6 +11,7 @@ use fumarole::measure::{Paper, Variant as _};
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Shading, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
+use glam::{UVec2, Vec2};
 
 use super::fire::{Fire, ball, quick, text};
 use crate::common::gpu_test;
@@ -47,6 +48,34 @@ fn the_object_fills_its_share_of_the_picture() {
             let (filled, other) = if by_height { (rows, columns) } else { (columns, rows) };
             assert!((filled - 0.8).abs() < 0.025 && other < 0.82, "{mesh}: {columns} x {rows}");
         }
+    });
+}
+
+/// The picture of a sheet on the ground, in the light of the sun alone.
+fn sheet(device: &Arc<Device>, ground: bool, number: u32) -> Vec<u8> {
+    let quick = Parameters { speed_per_s: 1.0, flammability: 10, fire: 0, smoke: 0, ..Parameters::default() };
+    let parameters = Parameters { ground, width: 160, height: 120, ..quick };
+    let mut fire = Fire::new(device, Variant::Shell, &parameters, &shapes::plane(Vec2::ONE, UVec2::splat(8)));
+    fire.frame(number);
+    read_image(device, fire.paper.picture()).unwrap()
+}
+
+#[test]
+fn a_sheet_on_the_ground_hides_it_and_leaves_ash_all_over() {
+    gpu_test(|device| {
+        let alone = sheet(device, false, 0);
+        let of_sheet = |picture: &[u8]| {
+            let pixels = alone.chunks_exact(4).zip(picture.chunks_exact(4));
+            pixels.filter(|(pixel, _)| pixel[..] != alone[..4]).map(|(_, there)| there.to_vec()).collect::<Vec<_>>()
+        };
+        let on_ground = sheet(device, true, 0);
+        assert!(on_ground != alone && of_sheet(&alone).len() > 1000);
+        assert!(of_sheet(&on_ground) == of_sheet(&alone));
+        // It has burnt.
+        let mut ash: Vec<u8> = of_sheet(&sheet(device, true, 300)).iter().map(|pixel| pixel[0]).collect();
+        ash.sort_unstable();
+        let [median, most] = [ash[ash.len() / 2], ash[ash.len() - 1]].map(f64::from);
+        assert!(median > 0.7 * most, "{median} of {most}");
     });
 }
 

@@ -56,6 +56,22 @@ fn folded_light_is_warned_of_where_points_are_sampled() {
     });
 }
 
+#[test]
+fn receivers_that_rise_out_of_the_water_are_told() {
+    gpu_test(|device| {
+        let still =
+            Parameters { waves: WaveParameters { count: 0, ..Parameters::default().waves }, ..parameters(OVERHEAD) };
+        for (up_m, is_told) in [(2.9, false), (3.5, true)] {
+            let mesh = floor().mesh.transformed(&Mat4::from_translation(Vec3::Y * up_m));
+            for variant in [Variant::LevelMap, Variant::Stencil] {
+                let found = warnings(device, variant, &still, &ReceiverInput { mesh: mesh.clone(), ..floor() });
+                let dry = found.iter().find(|line| line.contains("0.50 m above the water's level"));
+                assert_eq!(dry.is_some(), is_told, "{up_m}, {variant:?}: {found:?}");
+            }
+        }
+    });
+}
+
 /// Slanted light goes farther through the water and is turned more: where it lands the water's cells are turned over, by the oracle's
 /// rays, in water under which light from overhead is not.
 #[test]

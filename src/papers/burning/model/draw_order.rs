@@ -1,27 +1,26 @@
 //! The order of the drawn triangles in which a device shades the fewest vertices twice.
 
-use std::collections::HashMap;
+use rayon::slice::ParallelSliceMut;
 
 /// The numbers of the triangles, neighbours after each other.
 pub fn draw_order(triangles: &[[u32; 3]], vertex_count: u32) -> Vec<u32> {
-    // The first corner may be another afterwards.
-    let turned = |&[a, b, c]: &[u32; 3]| {
-        let least = a.min(b).min(c);
-        if a == least {
-            [a, b, c]
-        } else if b == least {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        }
-    };
-    let mut numbers: HashMap<[u32; 3], Vec<u32>> = HashMap::with_capacity(triangles.len());
-    for (number, triangle) in triangles.iter().enumerate().rev() {
-        numbers.entry(turned(triangle)).or_default().push(number as u32);
-    }
     let ordered = meshopt::optimize_vertex_cache(triangles.as_flattened(), vertex_count as usize);
-    let number_of = |t: &[u32]| numbers.get_mut(&turned(&[t[0], t[1], t[2]]))?.pop();
-    ordered.chunks_exact(3).filter_map(number_of).collect()
+    // Both lists hold the same triangles, each in some order: sorted alike they lie side by side.
+    let own = sorted(triangles.iter().copied());
+    let ordered = sorted(ordered.chunks_exact(3).map(|t| [t[0], t[1], t[2]]));
+    let mut order = vec![0; triangles.len()];
+    for ((_, number), (_, place)) in own.iter().zip(&ordered) {
+        order[*place as usize] = *number;
+    }
+    order
+}
+
+/// Triangles by their corners, whichever comes first, each with its place in the list.
+fn sorted(triangles: impl Iterator<Item = [u32; 3]>) -> Vec<([u32; 3], u32)> {
+    let turned = |[a, b, c]: [u32; 3]| [a, b, c].min([b, c, a]).min([c, a, b]);
+    let mut sorted: Vec<_> = triangles.map(turned).zip(0..).collect();
+    sorted.par_sort_unstable();
+    sorted
 }
 
 #[cfg(test)]

@@ -137,12 +137,13 @@ pub fn distances(
         _ => open.pop().map(|Reverse(found)| found),
     };
     let mut times = vec![0; positions.len() + air.count()];
+    // What is already as near as the place that a way goes on from is not asked for: that way is no shorter.
+    let mut reached: Vec<(usize, f64)> = Vec::new();
     while let Some((bits, node)) = next(&mut open) {
-        let mut reached: Vec<(usize, f64)> = Vec::new();
         let from = match node.checked_sub(positions.len()) {
             None if f64::from_bits(bits) > distances[node] => continue,
             None => {
-                reached.extend(along_surface(node, &distances, (positions, triangles), &incidence, lean));
+                along_surface(node, &distances, (positions, triangles), &incidence, lean, &mut reached);
                 let over = beside.get(&node).into_iter().flatten();
                 reached.extend(over.map(|&to| (to, distances[node] + length(place(node), place(to), lean))));
                 (node, vec![air.voxel_of(place(node))])
@@ -152,19 +153,23 @@ pub fn distances(
                 let from = in_air[voxel].1;
                 let through = |to: DVec3| distances[from] + THROUGH_AIR * length(place(from), to, lean);
                 let inside = air.inside.of(voxel as u32).iter().map(|to| *to as usize);
-                reached.extend(inside.map(|to| (to, through(place(to)))));
+                let farther = inside.filter(|&to| distances[to] > distances[from]);
+                reached.extend(farther.map(|to| (to, through(place(to)))));
                 (from, air.around(voxel).collect())
             }
         };
         let (from, voxels) = from;
         for voxel in voxels {
+            if in_air[voxel].0 <= distances[from] {
+                continue;
+            }
             let distance = distances[from] + THROUGH_AIR * length(place(from), air.middle(voxel), lean);
             if is_shorter(distance, in_air[voxel].0, &mut times[positions.len() + voxel]) {
                 in_air[voxel] = (distance, from);
                 open.push(Reverse((distance.to_bits(), positions.len() + voxel)));
             }
         }
-        for (to, distance) in reached {
+        for (to, distance) in reached.drain(..) {
             if is_shorter(distance, distances[to], &mut times[to]) {
                 distances[to] = distance;
                 open.push(Reverse((distance.to_bits(), to)));
@@ -176,30 +181,37 @@ pub fn distances(
 
 /// True of a way that is worth going on from; counts it for the place.
 fn is_shorter(distance: f64, known: f64, times: &mut u32) -> bool {
+    if distance >= known {
+        return false;
+    }
     let share = SHORTER * f64::from(times.saturating_sub(TIMES).min(60)).exp2();
     let is = distance < (1.0 - share) * known;
     *times += u32::from(is);
     is
 }
 
-/// The distances on from a vertex to the corners of its triangles.
+/// Adds the corners of a vertex's triangles that the way over it may be the shortest to, each with its distance.
 fn along_surface(
     vertex: usize,
     distances: &[f64],
     (positions, triangles): (&[Vec3], &[[u32; 3]]),
     incidence: &Incidence,
     lean: DVec3,
-) -> Vec<(usize, f64)> {
+    reached: &mut Vec<(usize, f64)>,
+) {
     let place = |vertex: usize| positions[vertex].as_dvec3();
-    let of_triangle = |entry: &u32| {
+    for entry in incidence.of(vertex as u32) {
         let corners = triangles[(entry / 4) as usize].map(|corner| corner as usize);
         let [first, second] = [1, 2].map(|step| corners[(*entry as usize % 4 + step) % 3]);
-        [(first, second), (second, first)].map(|(to, other)| {
+        for (to, other) in [(first, second), (second, first)] {
             let ends = [vertex, other];
-            (to, across(ends.map(place), ends.map(|end| distances[end]), place(to), lean))
-        })
-    };
-    incidence.of(vertex as u32).iter().flat_map(of_triangle).collect()
+            let known = ends.map(|end| distances[end]);
+            // What is over an edge is no nearer than the nearer of its ends.
+            if distances[to] > known[0].min(known[1]) {
+                reached.push((to, across(ends.map(place), known, place(to), lean)));
+            }
+        }
+    }
 }
 
 /// Of a straight way, as heat takes it.

@@ -199,13 +199,16 @@ impl Tick<'_> {
         live / (1.0 + f64::from(block.burning) / f64::from(self.constants.flammability))
     }
 
-    /// Pass `vertex-mapping` (section 3.5.3): each vertex rotated with its block about the block's middle.
+    /// Pass `vertex-mapping` (section 3.5.3): each vertex rotated with its block about the block's middle,
+    /// and none below the ground.
     pub fn map(&self, state: &mut State) {
         for v in 0..state.positions.len() {
             let cell = state.cells[v];
             let (middle, [pitch, yaw, roll]) = (self.model.grid.midpoint(cell), state.rotations[cell].to_array());
             let rotation = DMat3::from_rotation_z(roll) * DMat3::from_rotation_y(yaw) * DMat3::from_rotation_x(pitch);
             state.mapped[v] = middle + rotation * (state.positions[v] - middle);
+            let ground = self.constants.ground.unwrap_or(f64::NEG_INFINITY);
+            state.mapped[v].y = state.mapped[v].y.max(ground);
         }
     }
 }

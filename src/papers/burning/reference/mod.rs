@@ -64,6 +64,8 @@ pub struct Constants {
     pub reaches: Vec<f64>,
     /// Height below which nothing melts.
     pub floor: f64,
+    /// Height below which nothing is drawn of an object that stands on it, by the natural look.
+    pub ground: Option<f64>,
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
     /// Triangles that are consumed stay as long as something would come off (3.5.4).
@@ -100,6 +102,7 @@ impl Constants {
             sources: sources.to_vec(),
             reaches: model.rest.iter().map(reach).collect(),
             floor,
+            ground: (p.look == Look::Natural).then_some(floor),
             active_limit: p.active_limit,
             keep_connected: p.keep_connected,
             random_rotation: p.random_rotation,
