@@ -69,7 +69,32 @@ fn names_that_are_not_utf_8_work() {
     assert_schema(&read_json(&json));
     let twice = [json.as_os_str(), OsStr::new(","), json.as_os_str()].concat_os();
     fumarole("compare").arg(twice).arg(&json).run().succeeded();
+    others_that_are_not_utf_8_work(&named);
     caustics("render --mesh").arg(named(".ply")).tiny().run().refused(2, &["caf\u{fffd}.ply", "No such file"]);
+}
+
+/// Maps, volumes, materials, folders, tables, traces, films and pages by such names.
+fn others_that_are_not_utf_8_work(named: &dyn Fn(&str) -> std::path::PathBuf) {
+    fs::write(named(".asc"), "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30\n1 2\n3 4\n").unwrap();
+    let land = terrain("render --quiet --size 32x24 --map").arg(named(".asc"));
+    land.arg("--image").arg(named("-map.png")).run().succeeded();
+    let volume =
+        b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n\x01\x02\x03\x04\x05\x06\x07\x08";
+    fs::write(named(".nrrd"), volume).unwrap();
+    let gas = gas("render --quiet --size 32x24 --volume-file").arg(named(".nrrd"));
+    gas.arg("--image").arg(named("-gas.png")).run().succeeded();
+    fs::write(named("-pot.obj"), super::burning_materials::pot()).unwrap();
+    fs::write(named(".toml"), "[[material]]\nkind = \"metal\"\nparts = [\"tin\"]\n").unwrap();
+    let bench = burning("bench --quiet --variant low-poly --levels 1 --size 32x24 --mesh").arg(named("-pot.obj"));
+    let bench = bench.arg("--materials").arg(named(".toml"));
+    let bench = bench.args(ONCE).arg("--csv").arg(named(".csv")).arg("--trace").arg(named(".trace.json"));
+    bench.arg("--json").arg(named("-burnt.json")).run().succeeded();
+    fumarole("report --quiet").arg(named("-burnt.json")).arg("--output").arg(named(".html")).run().succeeded();
+    let film = caustics("render --quiet --frame 0..2 --film").arg(named(".y4m")).tiny();
+    film.run().succeeded();
+    for ending in ["-map.png", "-gas.png", ".csv", ".trace.json", ".html", ".y4m"] {
+        assert!(named(ending).exists(), "{ending}");
+    }
 }
 
 /// Pieces of a name as one.

@@ -38,9 +38,11 @@ fn gas_names_each_pass_that_does_not_finish_a_pixel() {
 
 #[test]
 fn gas_names_froxels_that_do_not_finish() {
-    let program = gas("render --size 12x8 --steps 4 --froxels 9x7x8 --variant froxel");
-    let edit = ("gas/froxel-inject.comp", "if (is_cut || i < counts.samples) {", "if (true) {");
-    assert_fails(program, edit, &["pass volume", "--steps"]);
+    let ends = "    } while (i < counts.samples);";
+    for (line, instead) in [("if (is_cut || i < counts.samples) {", "if (true) {"), (ends, "    } while (false);")] {
+        let program = gas("render --size 12x8 --steps 4 --samples 4 --froxels 9x7x8 --variant froxel");
+        assert_fails(program, ("gas/froxel-inject.comp", line, instead), &["pass volume", "--steps"]);
+    }
 }
 
 /// Each shader of the tiles says so by itself.
@@ -124,6 +126,8 @@ fn caustics_names_light_that_is_left_out() {
         let edit = (&*format!("caustics/{pass}.comp"), line, "if (true) {");
         assert_fails(caustics(small), edit, &[&format!("pass {pass}"), "--water-triangles"]);
     }
+    let rows = ("caustics/land.comp", "for (; y <= to.y; y++) {", "for (; y < from.y; y++) {");
+    assert_fails(caustics(small), rows, &["pass land", "--water-triangles"]);
     // Rays that have not come down to the receiver.
     let turns = ("caustics/intersect.comp", "const int MOST_TURNS = 60000;", "const int MOST_TURNS = 0;");
     for layers in [1, 2] {

@@ -7,10 +7,10 @@ use fumarole::image::{Rgba8, read_png};
 use tempfile::TempDir;
 
 use super::{BURNING, CAUSTICS, CAUSTICS_SMART, GAS, LAVA, Paper, TERRAIN, driver_manifest};
-use crate::cli::program::{ONCE, Program, SCENE, burning, folder, fumarole, lava};
+use crate::cli::program::{ONCE, Program, SCENE, burning, caustics, folder, fumarole, lava, terrain};
 
-/// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, and
-/// filters have other fractions.
+/// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, since
+/// SwiftShader rounds places to 16ths of a pixel, as coarsely as Vulkan allows, and lavapipe to 256ths; filters have other fractions.
 const MEAN: f64 = 0.30;
 /// Most at the 99th percentile, of 255.
 const P99: u8 = 2;
@@ -72,6 +72,57 @@ fn burning_looks_the_same() {
 #[test]
 fn terrain_looks_the_same() {
     assert_same_pictures(&TERRAIN);
+}
+
+#[test]
+fn grid_points_on_the_radius_of_a_splat_count_on_both() {
+    let folder = folder();
+    let sums = |program: Program| {
+        let [dump, picture] = ["sums.npy", "picture.png"].map(|name| folder.path().join(name));
+        let program =
+            program.args("--variant paper --quiet --dump").arg(format!("accumulated-depths={}", dump.display()));
+        program.arg("--image").arg(&picture).run().succeeded();
+        words(&fs::read(&dump).unwrap()).into_iter().map(f32::from_bits).collect::<Vec<f32>>()
+    };
+    // A radius of two columns.
+    let scene = || lava("render --size 32x24 --particles 2000 --radius 0.16 --density 50x12x12 --splats 10x5");
+    let [ours, theirs] = [scene().on_test_device(), on_swiftshader(scene(), &folder)].map(sums);
+    let apart = ours.iter().zip(&theirs).filter(|(a, b)| (**a - **b).abs() > 1e-3 * a.abs()).count();
+    assert!(ours.iter().filter(|sum| **sum > 0.0).count() > 100 && apart == 0, "{apart} of {} sums", ours.len());
+}
+
+#[test]
+fn no_light_of_volumes_of_a_few_pixels_is_lost_on_either() {
+    let folder = folder();
+    let picture = |program: Program| {
+        let path = folder.path().join("picture.png");
+        program.args("--variant stencil --quiet --image").arg(&path).run().succeeded();
+        read_png(&path).unwrap()
+    };
+    let still = || caustics("render --waves 0 --mesh plane --camera=0.3,-0.2,2.5,0,-3,0 --size 32x24 --samples 1");
+    let [ours, theirs] = [still().on_test_device(), on_swiftshader(still(), &folder)].map(picture);
+    let apart = ours.pixels().iter().zip(theirs.pixels()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(apart <= Some(2), "{apart:?} of 255");
+}
+
+/// Its compiler inlines every call, and rays in a round frame ask for places in many.
+#[test]
+fn land_over_a_round_base_looks_the_same() {
+    let folder = folder();
+    let path = folder.path().join("picture.png");
+    for options in [
+        "--variant gpu-compute --base earth --interpolation bicubic",
+        "--variant dda-fragment --base cylinder:20000 --shadows",
+    ] {
+        let picture = |program: Program| {
+            let program = program.args("--resolution 128 --size 96x64 --quiet").args(options);
+            program.arg("--image").arg(&path).run().succeeded();
+            read_png(&path).unwrap()
+        };
+        let expected = picture(terrain("render").on_test_device());
+        let (mean, p99) = difference(&expected, &picture(on_swiftshader(terrain("render"), &folder)));
+        assert!(mean <= MEAN && p99 <= P99, "{options}: {mean:.3} on average, {p99} at p99");
+    }
 }
 
 /// The fluid with its heat and its crust, in two processes on each driver.
@@ -175,4 +226,17 @@ fn without_a_geometry_stage_and_statistics_a_record_says_so() {
         assert!(statistics["vertices"].is_null() && statistics["compute_invocations"].is_null(), "{statistics}");
         assert!(statistics["samples_passed"].as_u64().is_some_and(|samples| samples > 0), "{statistics}");
     }
+}
+
+/// A loader hides a driver of the portability subset, as MoltenVK's manifest calls it, from programs that do not ask for such.
+#[test]
+fn a_driver_of_the_portability_subset_is_listed() {
+    let folder = folder();
+    let path = driver_manifest(&folder);
+    let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    manifest["ICD"]["is_portability_driver"] = true.into();
+    fs::write(&path, manifest.to_string()).unwrap();
+    let listed = fumarole("devices --json").env("VK_DRIVER_FILES", &path).env("VK_ICD_FILENAMES", &path);
+    let listed = listed.run().succeeded().json();
+    assert!(listed[0]["name"].as_str().unwrap().contains("SwiftShader"), "{listed}");
 }

@@ -42,6 +42,18 @@ fn a_saved_shader_is_seen_and_a_broken_one_named_with_its_line() {
                 break;
             }
         }
+        // As does one that would bring the compiler down, and the worker with it.
+        let doubled: String = (1..40).map(|i| format!("#define A{i} A{0} A{0}\n", i - 1)).collect();
+        fs::write(&path, format!("#version 450\n#define A0 a+=1;\n{doubled}void main() {{ int a = 1; A39 }}\n"))
+            .unwrap();
+        loop {
+            if let Event::Failed { problem, .. } = worker.next()
+                && !problem.contains("no_such_value")
+            {
+                assert!(problem.contains("gas/view.frag brought a compiler to its end"), "{problem}");
+                break;
+            }
+        }
         // The old one goes on.
         let moved = picture(&worker.frame_of(set("camera", "-1,3,9,0,0.5,0")), 0);
         assert!(moved == rendered("gas", &format!("{} --camera=-1,3,9,0,0.5,0", small("gas"))));
