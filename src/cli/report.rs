@@ -61,7 +61,7 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
     if arguments.sources.is_empty() && arguments.a.is_none() {
         return Err(Failure::Input("report: name records or a folder, as in: fumarole report fumarole-out".into()));
     }
-    file::check_writable(&arguments.output)?;
+    outcome::check_file(&arguments.output)?;
     outcome::check_apart([&arguments.output], &arguments.documents())?;
     let mut contents = Contents { title: "fumarole".to_owned(), ..Contents::default() };
     for source in &arguments.sources {

@@ -35,14 +35,14 @@ pub(super) fn of_unknown_ending(path: &Path, asset: Asset, ending: &str, known: 
     }
 }
 
-/// The file beside `path` with another ending, if there is one.
+/// The file beside `path` with another ending, if there is one: whoever opens it finds out that it is none.
 ///
 /// # Errors
 /// A link out of the folder: what is read there could be shown by a message.
 pub(super) fn beside(path: &Path, ending: &str) -> Result<Option<PathBuf>, Error> {
     let path = path.with_extension(ending);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let Some(name) = path.file_name().filter(|_| path.is_file()) else { return Ok(None) };
+    let Some(name) = path.file_name().filter(|_| path.symlink_metadata().is_ok()) else { return Ok(None) };
     match file::below(folder, Path::new(name)) {
         Ok(_) => Ok(Some(path)),
         Err(source) => Err(Error::Read { path, source }),

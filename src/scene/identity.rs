@@ -91,10 +91,6 @@ fn companions(path: &Path) -> Vec<PathBuf> {
         let file = texture.and_then(|name| file::below(folder, Path::new(&name)).ok());
         return file.filter(|file| file.is_file()).into_iter().collect();
     }
-    if ending == "png" {
-        let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
-        return beside.into_iter().find(|file| file.is_file()).into_iter().collect();
-    }
     if ending == "vrt" {
         // A part is no mosaic itself, and one that names another is refused: looking into that might have no end.
         let is_mosaic = |part: &Path| part.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrt"));
@@ -108,8 +104,11 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     if !samples.is_empty() {
         return samples;
     }
+    let is_picture = ["png", "tif", "tiff"].iter().any(|known| ending == *known);
+    let mut world_files = world_file::endings(path).into_iter().map(|ending| path.with_extension(ending));
+    let world_file = world_files.find(|file| is_picture && file.is_file());
     let beside: &[&str] = match () {
-        () if ending == "asc" => &["prj"],
+        () if ending == "asc" || world_file.is_some() => &["prj"],
         () if BESIDE_A_RASTER.iter().any(|known| ending == *known) => &BESIDE_A_RASTER,
         () => &[],
     };
@@ -117,7 +116,8 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     let others = beside.iter().filter(|other| ending != **other);
     let spelled =
         |ending: &str| [ending.to_owned(), ending.to_ascii_uppercase()].map(|ending| path.with_extension(ending));
-    others.filter_map(|other| spelled(other).into_iter().find(|file| file.is_file())).collect()
+    let found = others.filter_map(|other| spelled(other).into_iter().find(|file| file.is_file()));
+    world_file.into_iter().chain(found).collect()
 }
 
 /// The files of a glTF document's buffers, up to the first that is not there: its reader ends with that one.
@@ -167,7 +167,14 @@ mod tests {
         let picture = write("d.png", "picture");
         assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
         write("d.pgw", "place");
-        assert_ne!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
+        let placed = source_sha256(&picture).unwrap();
+        assert_ne!(placed, content::sha256(b"picture"));
+        write("d.prj", "projection");
+        assert_ne!(source_sha256(&picture).unwrap(), placed);
+        let raster = write("h.tif", "raster");
+        assert_eq!(source_sha256(&raster).unwrap(), content::sha256(b"raster"));
+        write("h.TFW", "place");
+        assert_ne!(source_sha256(&raster).unwrap(), content::sha256(b"raster"));
         let grid = write("f.asc", "grid");
         let alone = source_sha256(&grid).unwrap();
         assert_eq!(alone, content::sha256(b"grid"));

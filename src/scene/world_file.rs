@@ -8,16 +8,23 @@ use super::error::{Asset, Fault, Place};
 use super::height_map::{read_text, shown};
 use super::{Coordinates, Error, file};
 
-/// Endings of the world file of a PNG, in the order in which they are looked for.
-pub(super) const ENDINGS: [&str; 6] = ["pgw", "PGW", "pngw", "PNGW", "wld", "WLD"];
+/// Endings of the world file of a picture, in the order in which they are looked for: `pgw`, `pngw` and `wld` of a PNG, `tfw`,
+/// `tifw` and `wld` of a `.tif`, each in small letters and then in large ones.
+pub(super) fn endings(picture: &Path) -> Vec<String> {
+    let ending = picture.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let outer = ending.chars().next().zip(ending.chars().last());
+    let of_its_own = outer.map(|(first, last)| [format!("{first}{last}w"), format!("{ending}w")]);
+    let small = of_its_own.into_iter().flatten().chain(["wld".to_owned()]);
+    small.flat_map(|small| [small.to_uppercase(), small].into_iter().rev()).collect()
+}
 
 /// The world file beside a picture and the coordinates that it states, or nothing without one.
 ///
 /// # Errors
 /// [`Error::Read`]; [`Error::Malformed`] for a file that is no six numbers, and for one that turns its picture.
 pub fn beside(picture: &Path) -> Result<Option<(PathBuf, Coordinates)>, Error> {
-    for ending in ENDINGS {
-        let Some(path) = file::beside(picture, ending)? else { continue };
+    for ending in endings(picture) {
+        let Some(path) = file::beside(picture, &ending)? else { continue };
         let (input, _) = file::open(&path, Asset::WorldFile)?;
         return match parse(&read_text(input, &path)?) {
             Ok(coordinates) => Ok(Some((path, coordinates))),
@@ -90,6 +97,14 @@ mod tests {
             let fault = parse(text).unwrap_err().to_string();
             assert!(fault.contains(expected) && fault.len() < 120, "{text}: {fault}");
         }
+    }
+
+    #[test]
+    fn its_ending_is_of_its_picture_s() {
+        let of = |name: &str| endings(Path::new(name));
+        assert_eq!(of("a/land.png"), ["pgw", "PGW", "pngw", "PNGW", "wld", "WLD"]);
+        assert_eq!(of("land.TIF"), ["tfw", "TFW", "tifw", "TIFW", "wld", "WLD"]);
+        assert_eq!(of("land"), ["wld", "WLD"]);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::geotiff::Picture;
 use super::geotiff_check::check_samples;
+use super::placement::by_world_file;
 use super::{Format, PNG_MAGIC, ending, is_tiff, magic, malformed, png};
 use crate::scene::error::{Asset, Fault, Place};
-use crate::scene::height_map::grid::Placement;
 use crate::scene::height_map::{HeightMap, MapOptions, Samples};
 use crate::scene::{Error, file};
 use std::fs::File;
@@ -77,14 +77,14 @@ pub(super) fn look_through(
     let look = |packed: Packed, size_bytes: u64| -> Result<(HeightMap, bool), Fault> {
         let ((width, height), placement, has_known) = match packed {
             Packed::Tiff(input) => {
-                let mut picture = Picture::open(size_bytes, input, options)?;
+                let mut picture = Picture::open(size_bytes, input, options)?.in_file(path)?;
                 picture.raw_bytes()?;
                 let has_known = check_samples(&mut picture, voids)?;
                 ((picture.width, picture.height), picture.placement, has_known)
             }
             Packed::Png(input) => {
                 let (size, has_known) = png::look_through(size_bytes, input, voids)?;
-                (size, Placement::Unknown, has_known)
+                (size, by_world_file(path, size, size, options)?, has_known)
             }
         };
         let map = HeightMap::promised(width, height, Samples::Float(Vec::new())).and_then(|map| placement.place(map));

@@ -1,5 +1,5 @@
 use super::geotiff_check::check_samples;
-use super::placement::{MapCoordinates, Unit};
+use super::placement::{MapCoordinates, Unit, by_world_file};
 use super::stored::Stored;
 use super::{check_compressed, check_unit};
 use crate::scene::HeightMap;
@@ -10,6 +10,7 @@ use crate::scene::height_map::map::check_size;
 use crate::scene::height_map::{MapOptions, shown};
 use glam::DVec2;
 use std::io::{Read, Seek};
+use std::path::Path;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -37,12 +38,16 @@ pub(super) struct Picture<R: Read + Seek> {
     pub(super) placement: Placement,
     /// Of its file.
     pub(super) size_bytes: u64,
+    /// Columns and rows of the data, of which this may be an overview.
+    whole: (u32, u32),
+    options: MapOptions,
 }
 
 impl<R: Read + Seek> Picture<R> {
     /// The first picture, or the overview of a number from 1 on, which has its tags.
     pub(super) fn open(size_bytes: u64, input: R, options: impl Into<MapOptions>) -> Result<Self, Fault> {
-        let MapOptions { overview, has_own_spacing } = options.into();
+        let options = options.into();
+        let MapOptions { overview, has_own_spacing } = options;
         let mut limits = Limits::default();
         limits.decoding_buffer_size = MAX_BYTES;
         limits.intermediate_buffer_size = MAX_BYTES;
@@ -64,7 +69,16 @@ impl<R: Read + Seek> Picture<R> {
             Some((coordinates, unit)) => coordinates.in_parts(width, height).placed_or_spaced(unit, has_own_spacing)?,
             None => Placement::Unknown,
         };
-        Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes })
+        Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes, whole, options })
+    }
+
+    /// The picture in the file at `path`: where it states no place, that of a world file beside it.
+    pub(super) fn in_file(self, path: &Path) -> Result<Self, Fault> {
+        let placement = match self.placement {
+            Placement::Unknown => by_world_file(path, self.whole, (self.width, self.height), self.options)?,
+            stated => stated,
+        };
+        Ok(Picture { placement, ..self })
     }
 
     /// Bytes of all samples, unpacked.
@@ -125,8 +139,12 @@ pub(super) fn parse(
     input: impl Read + Seek,
     options: impl Into<MapOptions>,
 ) -> Result<HeightMap, Fault> {
-    let mut picture = Picture::open(size_bytes, input, options)?;
-    if picture.raw_bytes()? > spare_bytes(size_bytes) {
+    read(Picture::open(size_bytes, input, options)?)
+}
+
+/// Reads a picture in strips or tiles.
+pub(super) fn read(mut picture: Picture<impl Read + Seek>) -> Result<HeightMap, Fault> {
+    if picture.raw_bytes()? > spare_bytes(picture.size_bytes) {
         check_samples(&mut picture, &[])?;
     }
     let Picture { mut decoder, width, height, no_data, placement, .. } = picture;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tiff::decoder::{ChunkType, DecodingResult};
 
 use super::geotiff::{MAX_BYTES, Picture, fault, foreign};
-use super::{malformed, open_tiff};
+use super::{malformed, open_tiff, tiff};
 use crate::scene::Error;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
@@ -112,8 +112,8 @@ impl GeoTiffRows {
 }
 
 fn open(path: &Path, options: MapOptions) -> Result<Option<Picture<BufReader<File>>>, Error> {
-    let Some((file, size_bytes)) = open_tiff(path)? else { return Ok(None) };
-    Picture::open(size_bytes, BufReader::new(file), options).map(Some).map_err(|fault| malformed(path, fault))
+    let Some(opened) = open_tiff(path)? else { return Ok(None) };
+    tiff(path, opened, options).map(Some).map_err(|fault| malformed(path, fault))
 }
 
 /// Hands whole rows to `take`, as many as a tile or a strip has, while it says true; true where all are whole numbers by their kind.

@@ -86,9 +86,9 @@ pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<Height
             let (mut file, size_bytes) = open()?;
             let magic = magic(&mut file, path)?;
             if magic == PNG_MAGIC {
-                png::parse(size_bytes, BufReader::new(file))
+                png_map(path, (file, size_bytes), options)
             } else if is_tiff(&magic) {
-                geotiff::parse(size_bytes, BufReader::new(file), options)
+                tiff(path, (file, size_bytes), options).and_then(geotiff::read)
             } else if matches!(ending.as_str(), "tif" | "tiff" | "png") {
                 Err(Fault::new(Place::Byte(0), "its content is neither TIFF nor PNG; it is damaged or something else"))
             } else {
@@ -112,7 +112,24 @@ fn tiff_overview(path: &Path, options: MapOptions) -> Result<HeightMap, Error> {
         let reason = format!("`overview` {overview}: only a GeoTIFF has any, and {} is none", path.display());
         return Err(Error::HeightMap { reason });
     };
-    geotiff::parse(size_bytes, BufReader::new(file), options).map_err(|fault| malformed(path, fault))
+    tiff(path, (file, size_bytes), options).and_then(geotiff::read).map_err(|fault| malformed(path, fault))
+}
+
+/// The map of a PNG, whose size is given, at its place.
+fn png_map(path: &Path, (file, size_bytes): (File, u64), options: MapOptions) -> Result<HeightMap, Fault> {
+    let map = png::parse(size_bytes, BufReader::new(file))?;
+    let size = (map.width(), map.height());
+    let placed = placement::by_world_file(path, size, size, options)?.place(map);
+    placed.map_err(|error| Fault::foreign(Place::Whole, &error))
+}
+
+/// The picture of a TIFF, whose size is given, at its place.
+fn tiff(
+    path: &Path,
+    (file, size_bytes): (File, u64),
+    options: MapOptions,
+) -> Result<geotiff::Picture<BufReader<File>>, Fault> {
+    geotiff::Picture::open(size_bytes, BufReader::new(file), options)?.in_file(path)
 }
 
 /// The file and its size, if it is a TIFF by its content.

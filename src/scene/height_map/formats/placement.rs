@@ -1,10 +1,10 @@
 //! Spacing of the samples of a raster with map coordinates.
 
 use super::read_text;
-use crate::scene::error::{Asset, Fault};
+use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::Placement;
-use crate::scene::height_map::{Coordinates, Geographic};
-use crate::scene::{Error, file};
+use crate::scene::height_map::{Coordinates, Geographic, MapOptions};
+use crate::scene::{Error, file, world_file};
 use glam::DVec2;
 use std::path::Path;
 
@@ -83,6 +83,27 @@ impl MapCoordinates {
             placed => placed,
         }
     }
+}
+
+/// The placement that a world file beside a picture states, in the unit that the `.prj` file beside it names; unknown without
+/// a world file. The picture is the `whole` one, or an overview of it of so many columns and rows.
+///
+/// # Errors
+/// Of the files beside it; as [`MapCoordinates::placed_or_spaced`].
+pub(super) fn by_world_file(
+    picture: &Path,
+    whole: (u32, u32),
+    (width, height): (u32, u32),
+    options: MapOptions,
+) -> Result<Placement, Fault> {
+    let foreign = |error: Error| Fault::foreign(Place::Whole, &error);
+    let Some((_, Coordinates { north_west, step })) = world_file::beside(picture).map_err(foreign)? else {
+        return Ok(Placement::Unknown);
+    };
+    let unit = beside(picture).map_err(foreign)?;
+    let whole =
+        MapCoordinates { north_west: Some(north_west), step, width: whole.0, height: whole.1, field: "its world file" };
+    whole.in_parts(width, height).placed_or_spaced(unit, options.has_own_spacing)
 }
 
 /// The unit that the `.prj` file beside a raster names, if there is one.
