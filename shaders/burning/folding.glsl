@@ -60,17 +60,32 @@ vec3 folded(vec3 s, vec3 d, uint fixed_points) {
     return min(fraction, shortest() / edge_length - 1.0) * edge;
 }
 
+// The step of s, and 1, if its edge to another vertex is out of range and s is to give way.
+vec4 asked(uint vertex, vec3 s, uint other, uint fixed_points) {
+    vec3 d = old_state[other].position;
+    float edge_length = length(s - d);
+    bool is_violating = edge_length > longest() || (edge_length < shortest() && edge_length > 0.0);
+    bool gives_way = is_violating && (is_setting() || is_source(vertex, s.y, other, d.y));
+    return gives_way ? vec4(folded(s, d, fixed_points), 1.0) : vec4(0.0);
+}
+
 float violation(vec3 edge) {
     return max(0.0, length(edge.xz) - longest()) + max(0.0, shortest() - length(edge));
+}
+
+// By which a step of s moves it out of range of another vertex that holds it.
+float torn(vec3 s, vec3 fold, uint other) {
+    VertexState holder = old_state[other];
+    bool is_above = holder.left > 0.0 && holder.position.y - s.y > shortest();
+    bool holds = labels[other] < DEFORMED || is_above;
+    return holds ? violation(s + fold - holder.position) - violation(s - holder.position) : 0.0;
 }
 
 // Fractional folding (6.3.3): the mean of the steps that the edges out of range ask for. It is not taken where it would
 // tear the vertex from those that hold it: what is not deformed yet, and what still burns above it. Without, the
 // surface is pulled out from under the solid rest.
 vec3 folding(uint vertex, vec3 s) {
-    bool sets = is_setting();
-    vec3 sum = vec3(0.0);
-    float violating = 0.0;
+    vec4 sum = vec4(0.0);
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
     for (uint i = from; i < to; i++) {
@@ -78,33 +93,19 @@ vec3 folding(uint vertex, vec3 s) {
         uint corner = incidence[i] % 4u;
         uvec2 others = uvec2(triangles[3u * triangle + (corner + 1u) % 3u], triangles[3u * triangle + (corner + 2u) % 3u]);
         uint fixed_points = (labels[others.x] < READY ? 1u : 0u) + (labels[others.y] < READY ? 1u : 0u);
-        for (int k = 0; k < 2; k++) {
-            uint other = k == 0 ? others.x : others.y;
-            vec3 d = old_state[other].position;
-            float edge_length = length(s - d);
-            bool is_violating = edge_length > longest() || (edge_length < shortest() && edge_length > 0.0);
-            if (is_violating && (sets || is_source(vertex, s.y, other, d.y))) {
-                sum += folded(s, d, fixed_points);
-                violating += 1.0;
-            }
-        }
+        sum += asked(vertex, s, others.x, fixed_points);
+        sum += asked(vertex, s, others.y, fixed_points);
     }
-    if (violating == 0.0) {
+    if (sum.w == 0.0) {
         return vec3(0.0);
     }
-    vec3 fold = (sets ? SETTING_SHARE : 1.0) * sum / violating;
+    vec3 fold = (is_setting() ? SETTING_SHARE : 1.0) * sum.xyz / sum.w;
     float growth = 0.0;
     for (uint i = from; i < to; i++) {
         uint triangle = incidence[i] / 4u;
         uint corner = incidence[i] % 4u;
-        for (uint k = 1u; k < 3u; k++) {
-            uint other = triangles[3u * triangle + (corner + k) % 3u];
-            VertexState holder = old_state[other];
-            bool is_above = holder.left > 0.0 && holder.position.y - s.y > shortest();
-            if (labels[other] < DEFORMED || is_above) {
-                growth += violation(s + fold - holder.position) - violation(s - holder.position);
-            }
-        }
+        growth += torn(s, fold, triangles[3u * triangle + (corner + 1u) % 3u]);
+        growth += torn(s, fold, triangles[3u * triangle + (corner + 2u) % 3u]);
     }
     return growth <= 0.0 ? fold : vec3(0.0);
 }

@@ -113,6 +113,17 @@ void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out 
     at = first_entry(level, plane.levels, plane.map_size);
 }
 
+// The part of a way that lies over the map, or a texel beside it, from 0 at its begin to 1 at its end; the first above the second where
+// none does.
+vec2 part_over_map(vec2 from, vec2 way) {
+    vec2 safe = mix(way, vec2(1.0e-6), lessThan(abs(way), vec2(1.0e-6)));
+    vec2 one = (vec2(-1.0) - from) / safe;
+    vec2 other = (vec2(float(plane.map_size) + 1.0) - from) / safe;
+    vec2 enter = min(one, other);
+    vec2 leave = max(one, other);
+    return vec2(max(max(enter.x, enter.y), 0.0), min(min(leave.x, leave.y), 1.0));
+}
+
 // Least and greatest height near a rectangle of texels, from the four entries of the pyramid that hold it. Where nothing is, the
 // least is above the greatest.
 vec2 heights_between(vec2 one, vec2 other) {

@@ -19,8 +19,8 @@ layout(std430, set = 0, binding = 11) buffer Intensities {
     float list[]; // I_c where each ray lands, negative where the light is turned over, 0 where it is not known
 } intensities;
 
-// Turns of loops on the way of a ray, all together: fewer than lavapipe grants to the loops of a shader, and room for
-// what follows. One surface takes 36,866 at most.
+// Turns of loops on the way of a ray, all together. One surface takes 36,866 at most, which lavapipe grants, with room for what follows;
+// with several it may end the loops before this does. Either is told.
 const int MOST_TURNS = 60000;
 
 int turns = 0;
@@ -79,6 +79,18 @@ vec4 first_hit(vec3 origin, vec2 slope) {
         return vec4(0.0);
     }
     vec2 path = abs(place_at(origin, slope, bottom) - place_at(origin, slope, top));
+    if (max(path.x, path.y) > float(MOST_STEPS)) {
+        // Under a high and narrow receiver most of a slanting way lies beside the map.
+        vec2 begin = place_at(origin, slope, top);
+        vec2 part = part_over_map(begin, place_at(origin, slope, bottom) - begin);
+        if (part.x >= part.y) {
+            return vec4(0.0);
+        }
+        vec2 ends = mix(vec2(top), vec2(bottom), part);
+        top = ends.x;
+        bottom = ends.y;
+        path = abs(place_at(origin, slope, bottom) - place_at(origin, slope, top));
+    }
     int steps = int(clamp(ceil(max(path.x, path.y)), 1.0, float(MOST_STEPS)));
     float above = top;
     float height = top;
@@ -172,7 +184,7 @@ void main() {
     }
     landings.list[index] = whole_of(landing);
     intensities.list[index] = light;
-    if (is_cut) {
+    if (is_cut || is_shadow_cut) {
         unfinished.intersect = 1u;
     }
 }

@@ -28,6 +28,12 @@ const float LEAST_MOVED = 0.3;
 bool is_hidden(vec2 place, int layer, float height, vec2 slope, float top) {
     vec2 back = -slope * plane.texels_per_m;
     vec2 path = abs(back) * (top - height);
+    if (max(path.x, path.y) > float(MOST_STEPS)) {
+        // Beside the map nothing hides it.
+        float part = part_over_map(place, back * (top - height)).y;
+        top = height + (top - height) * part;
+        path *= part;
+    }
     int steps = int(min(max(path.x, path.y), float(MOST_STEPS)));
     int from = 0;
     // The way leaves the texel halfway through its first step, or not at all.
@@ -162,7 +168,8 @@ void main() {
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
-        for (int layer = 0; layer < layer_count(); layer++) {
+        int layer = 0;
+        for (; layer < layer_count(); layer++) {
             // Every eighth texel of the rows one after the other: a number in the row, and the row.
             float rows_a_column = 1.0 / float(way.columns);
             int skipped = int((float(part) + 0.5) * rows_a_column);
@@ -223,8 +230,9 @@ void main() {
             }
             is_cut = is_cut || y <= way.to.y;
         }
+        is_cut = is_cut || layer < layer_count();
     }
-    if (is_cut || at < straddling.count) {
+    if (is_cut || is_shadow_cut || at < straddling.count) {
         atomicAdd(unfinished.straddle, 1u);
     }
 }

@@ -87,16 +87,24 @@ void main() {
     if (bits != 0u || chunk < chunks.to || is_cut) {
         is_ended = 1u;
     }
-    for (uint i = 0u; i < kept; i++) {
-        links[first + i].x = i + 1u < kept ? first + i + 1u : NONE;
+    uint linked = 0u;
+    for (; linked < kept; linked++) {
+        links[first + linked].x = linked + 1u < kept ? first + linked + 1u : NONE;
+    }
+    if (linked < kept) {
+        is_ended = 1u;
     }
     if (kept > 0u) {
         heads[list] = first;
     }
     uint covered = 0u;
-    for (uint i = 1u; i < kept; i++) {
-        uint slot = first + i - 1u;
+    uint looked_at = 1u;
+    for (; looked_at < kept; looked_at++) {
+        uint slot = first + looked_at - 1u;
         covered |= opacity_of(Color(0u, colors[slot].y)) >= 1.0 ? links[slot].y : 0u;
+    }
+    if (looked_at < kept) {
+        is_ended = 1u;
     }
     bool shows = has_lost && covered != FULL;
     if (shows != ((before & SHOWS) != 0u)) {

@@ -73,6 +73,8 @@ void main() {
     heights_m = mix(heights_m, vec4(NO_PLANE_M), greaterThan(planes, vec4(float(gather.grid.y) - 0.5)));
     uvec3 low = cell_of(vec3(column_m.x, heights_m.x, column_m.y) - gather.radius_m);
     uvec3 high = cell_of(vec3(column_m.x, highest_m, column_m.y) + gather.radius_m);
+    // A cell is as wide as the radius: beyond three nothing is near, however rounding has it.
+    high.xz = min(high.xz, low.xz + 2u);
     vec4 sum = vec4(0.0);
     bool goes_on = false;
     for (uint z = low.z; z <= high.z; z++) {

@@ -26,7 +26,7 @@ layout(push_constant, std430) uniform Squares {
     uint step; // columns along either axis that one in their middle stands for
 } squares;
 
-const uint MOST_SIDE = 255u; // lavapipe ends all loops of a shader after 65,535 iterations
+const uint MOST_SIDE = 254u; // lavapipe ends all loops of a shader after 65,535 iterations
 
 void main() {
     uvec2 square = gl_GlobalInvocationID.xy;

@@ -1,5 +1,5 @@
 //! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document and leave
-//! no field out, passes in files of their names, a test for each misuse of the Vulkan layer, and no test's files in the
+//! no field out, arrows between modules, passes in files of their names, loops that pages bound, a test for each misuse of the Vulkan layer, and no test's files in the
 //! repository.
 
 use std::collections::BTreeSet;
@@ -160,6 +160,81 @@ fn fields_that_others_see_are_documented() {
         }
     }
     assert!(bare.is_empty(), "{}", bare.join("\n"));
+}
+
+/// A module, and those that it knows nothing of.
+const ARROWS: [(&str, &[&str]); 8] = [
+    ("src/shader_build", &["cli", "window", "papers", "measure", "report", "gpu", "scene", "image"]),
+    ("src/gpu", &["cli", "window", "papers", "measure", "report", "scene", "image"]),
+    ("src/scene", &["cli", "window", "papers", "measure", "report", "gpu", "image"]),
+    ("src/image", &["cli", "window", "papers", "measure", "report", "gpu", "scene"]),
+    ("src/report", &["cli", "window", "papers", "measure", "gpu", "scene"]),
+    ("src/measure", &["cli", "window", "papers"]),
+    ("src/papers", &["cli", "window"]),
+    ("src/window", &["cli", "papers"]),
+];
+
+/// Of papers, the command line and the window know the list alone, and papers know no option's spelling.
+#[test]
+fn arrows_point_one_way() {
+    let mut wrong = Vec::new();
+    let mut look = |folder: &str, is_wrong: &dyn Fn(&str) -> bool| {
+        for path in sources(folder) {
+            // Tests, and what is made for them, may ask what they like.
+            let is_of_tests = ["tests.rs", "example.rs"].iter().any(|name| path.ends_with(name));
+            let text = fs::read_to_string(&path).unwrap();
+            let lines = (1..).zip(text.lines()).take_while(|(_, line)| !is_of_tests && line.trim() != "#[cfg(test)]");
+            wrong.extend(
+                lines.filter(|(_, line)| is_wrong(line)).map(|(n, line)| format!("{}:{n}: {line}", path.display())),
+            );
+        }
+    };
+    for (folder, unknown) in ARROWS {
+        look(folder, &|line| unknown.iter().any(|module| line.contains(&format!("crate::{module}::"))));
+    }
+    let names = ["lava", "gas", "caustics", "burning", "terrain"];
+    look("src/cli", &|line| names.iter().any(|paper| line.contains(&format!("papers::{paper}"))));
+    look("src/papers", &|line| line.split("--").skip(1).any(|after| after.starts_with(|c: char| c.is_alphabetic())));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Input may lengthen a loop whose end is no number, and drivers end loops: the paper's page says what bounds it.
+#[test]
+fn loops_that_may_be_long_stand_on_their_pages() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut missing = Vec::new();
+    for paper in ["lava", "gas", "caustics", "burning", "terrain"] {
+        let page = fs::read_to_string(root.join(format!("docs/{paper}.md"))).unwrap();
+        let (_, section) = page.split_once("\n## Loops\n").unwrap_or_else(|| panic!("{paper}: no loops"));
+        let section = section.split("\n## ").next().unwrap();
+        let files = fs::read_dir(root.join("shaders").join(paper)).unwrap();
+        let files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
+        assert!(files.len() > 20, "{paper}");
+        for path in files {
+            let text = fs::read_to_string(&path).unwrap();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let is_long = text.lines().any(may_be_long);
+            if is_long && !section.contains(&format!("`{name}`")) {
+                missing.push(format!("docs/{paper}.md: {name}"));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// True for a line of a shader with a loop of which no end is made of numbers and of constants' names, in capitals.
+fn may_be_long(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    if code.contains("while (") {
+        return true;
+    }
+    let Some((_, head)) = code.split_once("for (") else { return false };
+    let is_constant = |end: &str| {
+        let end = end.replace("uint(", "").replace("int(", "");
+        end.contains(char::is_alphanumeric) && !end.trim().trim_end_matches('u').contains(char::is_lowercase)
+    };
+    let ends = head.split(';').nth(1).unwrap_or_default().split("&&");
+    !ends.filter_map(|condition| condition.split_once('<')).any(|(_, end)| is_constant(end))
 }
 
 #[test]

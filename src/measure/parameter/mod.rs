@@ -1,5 +1,6 @@
 //! The one declaration of a parameter: name, unit, range, default, help, section, and what a change of it costs. The
-//! command line's option, its help and messages, the check, the record's `config` and the page's table come from it.
+//! command line's option, its help and messages, the check, the record's `config` and the page's table come from it. The
+//! default is what the field has in the set-up's own default, where every one of them reads it.
 //!
 //! ```text
 //! Parameter::new("absorption", field!(Parameters.absorption_per_m))

@@ -1,4 +1,4 @@
-//! `--lod`: a level, or the one that suits the camera's distance.
+//! The level of detail: a level, or the one that suits the camera's distance.
 
 use std::ffi::OsStr;
 

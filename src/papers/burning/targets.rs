@@ -1,4 +1,4 @@
-//! Targets of `--dump`: all that a second program needs to follow the object.
+//! Targets that can be dumped: all that a second program needs to follow the object.
 
 use super::Burning;
 use super::puddle::PUDDLE_CELLS;

@@ -75,7 +75,7 @@ impl HiddenSurfaces {
         self.positions.image().desc().layers
     }
 
-    /// The maps that `--dump` knows.
+    /// The maps that can be dumped.
     pub fn targets(&self) -> [(&'static str, &Arc<ImageView>); 4] {
         [
             ("hidden-position-map", &self.positions),

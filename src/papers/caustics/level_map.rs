@@ -135,7 +135,7 @@ impl LevelMap {
 }
 
 impl ReceiverPasses {
-    /// The maps that `--dump` knows.
+    /// The maps that can be dumped.
     pub fn targets(&self) -> [(&'static str, &Arc<ImageView>); 4] {
         [
             ("position-map", self.maps.position()),

@@ -314,7 +314,7 @@ impl Caustics {
         of_light.flat_map(|each| named(each).into_iter().chain(hidden(each))).collect()
     }
 
-    /// The maps of each receiver under light `light` that `--dump` knows.
+    /// The maps of each receiver under light `light` that can be dumped.
     fn map_targets(&self, light: usize) -> Vec<Target> {
         let maps: Vec<_> = match &self.technique {
             Technique::LevelMap(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),

@@ -65,7 +65,7 @@ impl Volumetric {
 }
 
 impl ReceiverPasses {
-    /// The maps that `--dump` knows.
+    /// The maps that can be dumped.
     pub fn targets(&self) -> [(&'static str, &Arc<ImageView>); 4] {
         [
             ("illumination-map", &self.slice_images.illumination_map),

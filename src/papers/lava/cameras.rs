@@ -1,4 +1,4 @@
-//! The cameras of the figures, and the value of `--camera`.
+//! The cameras of the figures, and those that are given.
 
 use std::ffi::OsStr;
 

@@ -1,4 +1,4 @@
-//! The value of `--color`: the thesis's constant orange, or that of a black body.
+//! A colour: the thesis's constant orange, or that of a black body.
 
 use std::ffi::OsStr;
 

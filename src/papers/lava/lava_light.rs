@@ -13,7 +13,7 @@ use crate::host_block;
 /// Lamps along the longer side, at most.
 const LAMPS: u32 = 32;
 /// Columns along a side of a lamp's square that it looks at, at most, as in `lava/lava-light.comp`.
-const MOST_SIDE: u32 = 255;
+const MOST_SIDE: u32 = 254;
 /// Bytes of a lamp.
 const LAMP: u64 = 48;
 

@@ -1,4 +1,4 @@
-//! The value of `--rock`: one of the two that we make, or a picture's.
+//! A rock: one of the two that we make, or a picture's.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;

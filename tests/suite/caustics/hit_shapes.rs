@@ -222,3 +222,24 @@ fn a_wall_as_thin_as_texels_shades_a_large_map() {
         assert!(lit > 100_000 && missed * 1000 <= lit, "{missed} of {lit}");
     });
 }
+
+/// A post 4,000 times as high as wide: of the ways of rays through its box far more lies beside its map than over it. The light on its
+/// top is that of a smaller map, whose ways have fewer texels than a ray may take steps.
+#[test]
+fn a_high_post_is_lit_alike_on_maps_of_two_sizes() {
+    gpu_test(|device| {
+        let mut post = shapes::cuboid();
+        post.positions.iter_mut().for_each(|place| *place *= Vec3::new(1.0 / 4000.0, 1.0, 1.0 / 4000.0));
+        let receiver = sunk(&post);
+        let [small, large] = [64, 256].map(|map_size| {
+            let parameters = Parameters { waves: STEEP, map_size, water_triangles: 40_000, ..parameters(OVERHEAD) };
+            let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&receiver));
+            let texels = drawing.target("position-map").iter().zip(drawing.target("caustics-map"));
+            let lit: Vec<f64> = texels.filter(|(at, _)| **at > -1e29).map(|(_, &light)| f64::from(light)).collect();
+            assert!(lit.len() > 100, "{} texels of {map_size}", lit.len());
+            lit.iter().sum::<f64>() / lit.len() as f64
+        });
+        println!("{small} and {large}");
+        assert!(small > 0.1 && (large / small - 1.0).abs() < 1e-3, "{small} and {large}");
+    });
+}

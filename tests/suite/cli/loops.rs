@@ -69,6 +69,13 @@ fn gas_names_tiles_whose_triangles_do_not_end() {
         ("tiles", "fragments-tiles", &*counted.0, &*counted.1),
         ("tiles", "fragments-tiles", &*kept.0, &*kept.1),
         ("k:2", "fragments-nearest", nearest, "    } while (false);\n    if (bits"),
+        ("k:2", "fragments-nearest", "for (; linked < kept; linked++) {", "for (; linked < 0u; linked++) {"),
+        (
+            "k:2",
+            "fragments-nearest",
+            "for (; looked_at < kept; looked_at++) {",
+            "for (; looked_at < 1u; looked_at++) {",
+        ),
     ] {
         let program = gas(&format!("render --size 12x8 --steps 4 --lists {lists}"));
         let file = format!("gas/{shader}.comp");
@@ -121,13 +128,21 @@ fn lava_names_particles_that_are_left_out() {
 #[test]
 fn caustics_names_light_that_is_left_out() {
     let small = "render --size 32x24 --map-size 16 --water-triangles 100 --mesh box --variant hit";
-    for (pass, line) in [("land", "if (is_cut || y <= to.y) {"), ("straddle", "if (is_cut || at < straddling.count) {")]
-    {
+    for (pass, line) in [
+        ("land", "if (is_cut || y <= to.y) {"),
+        ("straddle", "if (is_cut || is_shadow_cut || at < straddling.count) {"),
+    ] {
         let edit = (&*format!("caustics/{pass}.comp"), line, "if (true) {");
         assert_fails(caustics(small), edit, &[&format!("pass {pass}"), "--water-triangles"]);
     }
     let rows = ("caustics/land.comp", "for (; y <= to.y; y++) {", "for (; y < from.y; y++) {");
     assert_fails(caustics(small), rows, &["pass land", "--water-triangles"]);
+    let surfaces = "for (; layer < layer_count(); layer++) {\n            // Every";
+    let first = "for (; layer < 0; layer++) {\n            // Every";
+    let teapot = small.replace("--map-size 16", "--map-size 64").replace("--mesh box", "--mesh teapot");
+    assert_fails(caustics(&teapot), ("caustics/straddle.comp", surfaces, first), &["pass straddle"]);
+    let shadow = ("caustics/shadow-on.glsl", "for (; i < SHADOW_STEPS; i++) {", "for (; i < 0; i++) {");
+    assert_fails(caustics(&format!("{small} --shadows")), shadow, &["pass intersect", "did not end"]);
     // Rays that have not come down to the receiver.
     let turns = ("caustics/intersect.comp", "const int MOST_TURNS = 60000;", "const int MOST_TURNS = 0;");
     for layers in [1, 2] {

@@ -1,4 +1,4 @@
-//! The file of `--materials`: a table `[[material]]` for each, in TOML.
+//! A file of materials: a table `[[material]]` for each, in TOML.
 
 use std::collections::HashMap;
 use std::path::Path;

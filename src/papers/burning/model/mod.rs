@@ -83,7 +83,7 @@ pub struct Model {
 /// Stands for no vertex in a list of vertices.
 pub const NO_VERTEX: u32 = u32::MAX;
 
-/// Triangles around a vertex at most: a thread visits each up to six times, and lavapipe ends the loops of a shader after
+/// Triangles around a vertex at most: a thread visits each up to five times, and lavapipe ends the loops of a shader after
 /// 65,535 iterations.
 const MOST_AROUND: u32 = 8192;
 
