@@ -15,7 +15,8 @@ failed=
 for target in $targets; do
     mkdir -p "found/$target" artifacts
     echo "== $target"
-    # The cost rule: 1 s and 64 MiB beside the program's own, for files of less than a megabyte.
+    # Of the cost rule (1 s and 64 MiB beside the program's own, for files of less than a megabyte) as much as can be told from one
+    # process for all: 2 s an input, 80 MB an allocation, 1 GB in all. The tests of the command line hold the rest.
     FUMAROLE_FUZZ_TARGET=$target "target/$host/release/fuzz" "found/$target" "corpus/$target" -max_total_time="${2:-60}" \
         -timeout=2 -malloc_limit_mb=80 -rss_limit_mb=1024 -max_len=65536 -artifact_prefix="artifacts/$target-" \
         -print_final_stats=1 -verbosity=1 >"$log" 2>&1 || failed="$failed $target"

@@ -11,6 +11,8 @@
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary`, `present-fences` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher, and alignments, where they are lower |
+//! | `FUMAROLE_LAYER_NAME` | the device's name |
+//! | `FUMAROLE_LAYER_DROPS_BARRIERS` | set: barriers wait for nothing; images come into their layouts all the same |
 //! | `FUMAROLE_LAYER_HEAPS` | `all` or bytes: memory beyond the device's heaps, or beyond so much, is refused |
 //! | `FUMAROLE_LAYER_VULKAN` | `1.1`: the version of Vulkan that the device has, where it is higher |
 //! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |
@@ -18,6 +20,7 @@
 //!
 //! After a lost device, every submission and wait of the process fails the same way.
 
+mod barriers;
 mod calls;
 mod heap;
 mod labels;
@@ -177,6 +180,7 @@ unsafe extern "system" fn create_device(
             lend::resolve(&|name| next_device_proc(*device, name));
             labels::resolve(&|name| next_device_proc(*device, name));
             presents::resolve(&|name| next_device_proc(*device, name));
+            barriers::resolve(&|name| next_device_proc(*device, name));
         }
         result
     }
@@ -190,7 +194,18 @@ fn next_instance_proc(instance: vk::Instance, name: &CStr) -> vk::PFN_vkVoidFunc
     unsafe { next(instance, name.as_ptr()) }
 }
 
+/// True for a command that is none of a device's: whoever asks a validation layer for it by a device is warned.
+fn is_of_instance(name: &CStr) -> bool {
+    let name = name.to_string_lossy();
+    let begins = ["vkEnumerate", "vkGetPhysicalDevice"].iter().any(|begin| name.starts_with(begin));
+    let of_instance = ["vkCreateInstance", "vkDestroyInstance", "vkCreateDevice", "vkGetInstanceProcAddr"];
+    begins || name.ends_with("SurfaceKHR") || name.ends_with("MessengerEXT") || of_instance.contains(&&*name)
+}
+
 fn next_device_proc(device: vk::Device, name: &CStr) -> vk::PFN_vkVoidFunction {
+    if is_of_instance(name) {
+        return None;
+    }
     let next = NEXT_DEVICE_PROC.load(Ordering::Acquire);
     // SAFETY: as above.
     let next = if next == 0 { return None } else { unsafe { transmute::<usize, vk::PFN_vkGetDeviceProcAddr>(next) } };
@@ -210,6 +225,7 @@ fn own(name: &str) -> vk::PFN_vkVoidFunction {
             .or_else(|| heap::hook(other))
             .or_else(|| labels::hook(other))
             .or_else(|| presents::hook(other))
+            .or_else(|| barriers::hook(other))
             .or_else(|| calls::hook(other))?,
     };
     // SAFETY: each is a function of the signature that its name has in Vulkan.

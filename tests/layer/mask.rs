@@ -92,6 +92,13 @@ fn mask_properties(properties: &mut vk::PhysicalDeviceProperties) {
     if env::var_os("FUMAROLE_LAYER_DISCRETE").is_some() {
         properties.device_type = vk::PhysicalDeviceType::DISCRETE_GPU;
     }
+    if let Ok(name) = env::var("FUMAROLE_LAYER_NAME") {
+        properties.device_name = [0; vk::MAX_PHYSICAL_DEVICE_NAME_SIZE];
+        let last = properties.device_name.len() - 1;
+        for (to, from) in properties.device_name[..last].iter_mut().zip(name.bytes()) {
+            *to = from as c_char;
+        }
+    }
 }
 
 fn mask_limits(limits: &mut vk::PhysicalDeviceLimits) {

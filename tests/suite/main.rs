@@ -13,6 +13,7 @@ mod gpu;
 mod house;
 mod lava;
 mod page;
+mod setup;
 mod terrain;
 #[cfg(feature = "window")]
 mod window;

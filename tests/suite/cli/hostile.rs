@@ -7,9 +7,11 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Command;
 
+use super::hostile_cost::{black_png, scan_header};
 use super::program::{
     ONCE, Program, assert_schema, burning, caustics, entries, file, folder, fumarole, gas, lava, read_json, terrain,
 };
+use crate::faults::Layer;
 
 /// Retitles the terminal, clears it, and turns the text about.
 const ESCAPES: &str = "\x1b]0;x\x07\x1b[2J\u{202e}";
@@ -51,6 +53,25 @@ fn records_command_no_terminal() {
     assert!(is_tame(&ended.stdout) && ended.stdout.contains("\\u001b[2J"), "{:?}", ended.stdout);
     let ended = fumarole("compare").arg(&hostile).arg(&hostile).arg("--json").run().succeeded();
     assert!(is_tame(&ended.stdout) && ended.json()["runs"][0]["variant"] == text, "{:?}", ended.stdout);
+}
+
+/// Its driver names a device.
+#[test]
+fn devices_command_no_terminal() {
+    let (out, layer) = (folder(), Layer::new());
+    let name = format!("{ESCAPES}\nSAME: llvmpipe");
+    let on = |program: Program| layer.before(program.inside(out.path()), false).env("FUMAROLE_LAYER_NAME", &name);
+    let ended = on(fumarole("devices")).run().succeeded();
+    assert!(is_tame(&ended.stdout) && ended.stdout.contains("\\u001b[2J"), "{:?}", ended.stdout);
+    let ended = on(fumarole("devices --json")).run().succeeded();
+    assert!(is_tame(&ended.stdout) && ended.stdout.contains("\\u001b[2J"), "{:?}", ended.stdout);
+    on(caustics("render --device nowhere")).run().refused(2, &["\\u001b[2J", "SAME"]);
+    let ended = on(caustics("bench --json a.json").tiny().args(ONCE)).run().succeeded();
+    assert!(is_tame(&ended.stderr) && is_tame(&ended.stdout), "{:?}", ended.stderr);
+    assert_eq!(read_json(&out.path().join("a.json"))["environment"]["device"]["name"], name);
+    let ended = fumarole("report a.json -o a.html").inside(out.path()).run().succeeded();
+    assert!(is_tame(&ended.stderr), "{:?}", ended.stderr);
+    assert!(is_tame(&fs::read_to_string(out.path().join("a.html")).unwrap()));
 }
 
 #[test]
@@ -195,6 +216,14 @@ fn what_has_no_end_is_refused_in_folders_and_by_name() {
         make_pipe(&folder.join(pipe));
         folder
     };
+    // What is read with a file that lies beside it.
+    let beside = |folder: &str, name: &str, bytes: &[u8], pipe: &str| {
+        let path = pipe_in(folder, pipe).join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    };
+    let (grid, mut scan) = (&b"ncols 2\nnrows 2\n1 2\n3 4\n"[..], scan_header());
+    scan[344..347].copy_from_slice(b"ni1");
     let fail = "it is not a regular file";
     for (program, path, named) in [
         (terrain("render --map"), vrt.clone(), "pipe"),
@@ -204,6 +233,13 @@ fn what_has_no_end_is_refused_in_folders_and_by_name() {
         (gas("render --volume-file"), file(&out, "a.nhdr", nhdr), "pipe"),
         (caustics("render --mesh"), file(&out, "a.gltf", gltf), "buffer 0"),
         (burning("render --mesh box --materials"), file(&out, "a.toml", toml), "pipe"),
+        (terrain("render --map"), beside("placed", "a.png", &black_png(2), "a.pgw"), "a.pgw"),
+        (terrain("render --drape"), beside("drape", "a.png", &black_png(2), "a.pgw"), "a.pgw"),
+        (terrain("render --map"), beside("grid", "a.asc", grid, "a.prj"), "a.prj"),
+        (terrain("render --map"), beside("raster", "a.bil", &[0; 4], "a.hdr"), "a.hdr"),
+        (terrain("render --map"), beside("header", "a.hdr", b"ncols 2\nnrows 2\n", "a.bil"), "a.bil"),
+        (gas("render --volume-file"), beside("scan", "a.hdr", &scan, "a.img"), "a.img"),
+        (gas("render --volume-file"), beside("samples", "a.img", &[0; 8], "a.hdr"), "a.hdr"),
         (fumarole("assemble"), pipe_in("shards", "a-shard-0-of-2.json"), "a-shard-0-of-2.json"),
         (fumarole("assemble"), pipe_in("parts", "a.png.part.json"), "a.png.part.json"),
         (fumarole("report"), pipe.clone(), "pipe"),

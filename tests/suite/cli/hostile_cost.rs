@@ -132,6 +132,23 @@ fn small_files_of_many_triangles() {
 }
 
 #[test]
+fn texts_of_many_values() {
+    let header = |vertices: usize, faces: usize| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\nproperty float z\n\
+             element face {faces}\nproperty list uint int vertex_indices\nend_header\n"
+        )
+    };
+    let ply = |name: &str, text: String, part: &str| refused(mesh, name, text.as_bytes(), &[name, part]);
+    ply("promised.ply", header(90_000_000, 90_000_000) + &"0 0 0\n".repeat(1 << 20), "leaves them empty");
+    ply("points.ply", header(4_000_000, 1) + &"0 0 0\n".repeat(4_000_000) + "3 0 1 2\n", "positive area");
+    ply("long.ply", header(3, 1) + "0 0 0\n1 0 0\n0 1 0\n9000000" + &" 0".repeat(9_000_000), "positive area");
+    ply("words.ply", header(3, 1) + &"0 ".repeat(9_000_000), "cut off");
+    ply("empty.ply", header(3, 9_000_000) + "0 0 0\n1 0 0\n0 1 0\n" + &"0\n".repeat(9_000_000), "leaves them empty");
+    ply("blank.ply", header(3, 1) + &"\n".repeat(9_000_000), "a value is missing");
+}
+
+#[test]
 fn long_polygons() {
     let mut teeth = String::new();
     let count = 60_000;
@@ -234,6 +251,19 @@ fn mosaics_that_promise() {
     );
 }
 
+/// The header of a scan of 2 x 2 x 2 bytes in one file with them.
+pub(super) fn scan_header() -> Vec<u8> {
+    let mut scan = vec![0; 352];
+    scan[..4].copy_from_slice(&348_i32.to_le_bytes());
+    scan[40..48].copy_from_slice(&[3, 0, 2, 0, 2, 0, 2, 0]);
+    scan[70] = 2;
+    scan[72] = 8;
+    scan[108..112].copy_from_slice(&352.0_f32.to_le_bytes());
+    [80, 84, 88].iter().for_each(|&at| scan[at..at + 4].copy_from_slice(&1.0_f32.to_le_bytes()));
+    scan[344..347].copy_from_slice(b"n+1");
+    scan
+}
+
 #[test]
 fn volumes_that_promise() {
     let volume = || gas("render --volume-file");
@@ -268,14 +298,35 @@ fn volumes_that_promise() {
     refused(volume, "tight.mha", &[meta("1000 1000 100").as_bytes(), &packed].concat(), &["unpack it first"]);
     let short = [meta("200 200 200").as_bytes(), &packed[..packed.len() - 8]].concat();
     refused(volume, "cut.mha", &short, &["cut off"]);
-    let mut scan = vec![0; 352];
-    scan[..4].copy_from_slice(&348_i32.to_le_bytes());
+    let mut scan = scan_header();
     scan[40..48].copy_from_slice(&[3, 0, 0xff, 0x7f, 0xff, 0x7f, 0xff, 0x7f]);
-    scan[70] = 2;
-    scan[108..112].copy_from_slice(&352.0_f32.to_le_bytes());
-    [80, 84, 88].iter().for_each(|&at| scan[at..at + 4].copy_from_slice(&1.0_f32.to_le_bytes()));
-    scan[344..347].copy_from_slice(b"n+1");
     refused(volume, "large.nii", &scan, &["cut off"]);
+    let gzip = |bytes: &[u8]| {
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        std::io::Write::write_all(&mut packer, bytes).unwrap();
+        packer.finish().unwrap()
+    };
+    refused(volume, "large.nii.gz", &gzip(&scan), &["unpack it first"]);
+    refused(volume, "long.nii.gz", &gzip(&vec![0; 300_000_000]), &["does not begin as NIfTI-1"]);
+    scan[344..347].copy_from_slice(b"ni1");
+    refused_of(volume, &[("large.hdr", &scan), ("large.img", &[0; 1 << 20])], &["cut off"]);
+    // Headers with their samples beside them.
+    let nhdr = |sizes: &str, encoding: &str| {
+        header(sizes, "data file: a.raw").replace("raw\ndata", &format!("{encoding}\ndata"))
+    };
+    for (sizes, encoding, samples, part) in [
+        ("60000 60000 60000", "raw", &vec![0; 5_000_000], "more than a file has"),
+        ("1000 1000 100", "raw", &vec![0; 5_000_000], "cut off"),
+        ("1000 1000 1000", "gzip", &gzip(&vec![0; 60_000_000]), "unpack it first"),
+        ("1000 1000 1000", "ascii", &b"0 ".repeat(10_000_000), "raw or gzip"),
+    ] {
+        refused_of(volume, &[("a.nhdr", nhdr(sizes, encoding).as_bytes()), ("a.raw", samples)], &[part]);
+    }
+    let mhd = |sizes: &str| meta(sizes).replace("LOCAL", "a.zraw");
+    let cut = &packed[..packed.len() - 8];
+    for (sizes, samples, part) in [("1000 1000 100", &*packed, "unpack it first"), ("200 200 200", cut, "cut off")] {
+        refused_of(volume, &[("a.mhd", mhd(sizes).as_bytes()), ("a.zraw", samples)], &[part]);
+    }
     // The samples of a grid whose boxes of tiles are all the same.
     let mut grid = vec![0; 16 + 176 + 672 + 64 + 64 + 32 * 900_000];
     let length = (grid.len() - 192) as u64;

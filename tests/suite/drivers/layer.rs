@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::{CAUSTICS, CAUSTICS_SMART, Paper, TINY, layer_manifest};
+use super::{CAUSTICS, CAUSTICS_SMART, Paper, TINY, layer_manifest, library};
 use crate::cli::program::{ONCE, folder};
+use crate::faults::Layer;
 
 /// Compilers of a run's passes.
 fn compilers(run: &serde_json::Value) -> Vec<&str> {
@@ -63,4 +64,23 @@ fn a_layer_that_cannot_be_loaded_ends_with_3() {
     layer_manifest(&folder, Path::new("/no/such/layer.so"));
     let program = CAUSTICS.run("bench --quiet --validate").args(ONCE).on_test_device();
     program.env("VK_LAYER_PATH", folder.path()).run().refused(3, &["instance"]);
+}
+
+/// Clean runs say nothing of a layer that does not look: both see what is missing where nothing waits. The current one compares what
+/// shaders read and write where its heuristic is on, and `gas` does nothing else that must wait.
+#[test]
+fn barriers_that_wait_for_nothing_are_told() {
+    let name = "libVkLayer_khronos_validation.so";
+    let layer = Layer::new();
+    for (paper, scene) in TINY {
+        let compares = scene.compares_shader_accesses;
+        for (layer_library, compares) in [(Path::new(name), true), (&library(name), compares)] {
+            let program = scene.run("bench --quiet").args(ONCE).on_test_device();
+            let program = program.env("VK_SYNCVAL_SHADER_ACCESSES_HEURISTIC", compares.to_string());
+            let ended = layer.above(layer_library, program).env("FUMAROLE_LAYER_DROPS_BARRIERS", "1").run();
+            let (code, said) = (ended.status.code(), &ended.stderr);
+            let is_told = code == Some(1) && said.contains("SYNC-HAZARD-");
+            assert!(is_told || !compares, "{paper} under {}: {code:?}: {said}", layer_library.display());
+        }
+    }
 }

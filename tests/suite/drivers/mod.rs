@@ -3,7 +3,7 @@
 //! others, so that these tests write their own.
 //!
 //! Messages known to be false: of Debian's layer, 1.3.239, one of a device without `maintenance4`, see `faults::masks`; of
-//! Chromium 156's those of its heuristic, which compares what shaders write by whole bindings
+//! Chromium 156's, which is 1.4.364, those of its heuristic, which compares what shaders write by whole bindings
 //! (github.com/KhronosGroup/Vulkan-ValidationLayers/issues/11715).
 
 mod layer;

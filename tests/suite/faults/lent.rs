@@ -10,7 +10,7 @@ use crate::drivers::{layer_manifest, library};
 
 /// Runs with `extensions` played, under the current Khronos layer.
 fn lent(layer: &Layer, program: Program, extensions: &str) -> Program {
-    layer_manifest(&layer.above, &library("libVkLayer_khronos_validation.so"));
+    layer_manifest(&layer.validation, &library("libVkLayer_khronos_validation.so"));
     layer.before(program, true).env("FUMAROLE_LAYER_LENDS", extensions)
 }
 

@@ -146,3 +146,25 @@ fn each_paper_keeps_to_lowered_limits() {
     let met: usize = LIMITS.iter().map(|(_, papers)| papers.len()).sum();
     assert!(refusals > met / 2, "{refusals} refusals of {met}");
 }
+
+/// The needs of a run are known before the device is asked for any of them.
+#[test]
+fn what_no_device_holds_is_refused_before_memory_is_asked_for() {
+    let layer = Layer::new();
+    for (paper, options, part) in [
+        ("lava", "--density 1x67108864x1", "--density"),
+        ("gas", "--size 16000x16000", "--size"),
+        ("caustics", "--map-size 16384 --planes 256 --variant volumetric", "--map-size"),
+        ("burning", "--size 16000x16000", "--size"),
+        ("terrain", "--resolution 65536", "--resolution"),
+    ] {
+        let paper = PAPERS.iter().find(|known| known.name == paper).unwrap();
+        // A measurement looks at the device itself first.
+        let ended = layer.least(paper.bare("render --quiet --image a.png").args(options)).run();
+        let report = layer.report(&ended);
+        ended.refused(2, &[part]);
+        for call in ["vkAllocateMemory", "vkCreateBuffer", "vkCreateImage", "vkQueueSubmit2"] {
+            assert_eq!(report.count(call), 0, "{} {options}: {call}", paper.name);
+        }
+    }
+}

@@ -47,7 +47,12 @@ pub const PAPERS: [Paper; 5] = [
 
 impl Paper {
     pub fn run(&self, verb: &str) -> Program {
-        (self.program)(verb).args(self.scene).on_test_device()
+        self.bare(verb).args(self.scene)
+    }
+
+    /// Without the scene.
+    fn bare(&self, verb: &str) -> Program {
+        (self.program)(verb).on_test_device()
     }
 }
 
@@ -91,16 +96,16 @@ fn manifest(more: serde_json::Value) -> String {
 /// first holds the layer that is next to the program.
 pub struct Layer {
     folder: TempDir,
-    above: TempDir,
+    validation: TempDir,
 }
 
 impl Layer {
     pub fn new() -> Self {
         let folder = program::folder();
         file(&folder, "test_layer.json", manifest(serde_json::json!({})));
-        let above = program::folder();
-        layer_manifest(&above, Path::new("libVkLayer_khronos_validation.so"));
-        Layer { folder, above }
+        let validation = program::folder();
+        layer_manifest(&validation, Path::new("libVkLayer_khronos_validation.so"));
+        Layer { folder, validation }
     }
 
     fn report_path(&self) -> PathBuf {
@@ -112,7 +117,7 @@ impl Layer {
         // Mesa's implicit layer makes calls of its own, whose failures it hides from the program.
         let mut set = vec![("FUMAROLE_LAYER_REPORT", self.report_path().into()), ("NODEVICE_SELECT", "1".into())];
         if validated {
-            let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
+            let folders = std::env::join_paths([self.validation.path(), self.folder.path()]).unwrap();
             set.extend([("VK_LAYER_PATH", folders), ("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}").into())]);
         } else {
             set.extend([("VK_ADD_LAYER_PATH", self.folder.path().into()), ("VK_INSTANCE_LAYERS", LAYER.into())]);
@@ -140,6 +145,14 @@ impl Layer {
         let program =
             self.environment(validated).into_iter().fold(program, |program, (name, value)| program.env(name, value));
         if validated { program.args("--validate") } else { program }
+    }
+
+    /// Runs with the layer next to the program, and the Khronos layer of a library below it.
+    pub fn above(&self, library: &Path, program: Program) -> Program {
+        layer_manifest(&self.validation, library);
+        let folders = std::env::join_paths([self.folder.path(), self.validation.path()]).unwrap();
+        let program = program.args("--validate").env("VK_LAYER_PATH", folders).env("NODEVICE_SELECT", "1");
+        program.env("VK_INSTANCE_LAYERS", format!("{LAYER}:{VALIDATION}"))
     }
 
     /// Submissions that were counted in a program that has ended.
