@@ -5,8 +5,6 @@
 set -eu
 
 here=$(dirname "$0")
-# An ordinary user's PATH on Debian lacks ldconfig.
-PATH=$PATH:/usr/sbin:/sbin
 
 say() {
     printf 'setup: %s\n' "$1" >&2
@@ -40,7 +38,7 @@ has_cpp_compiler() {
 }
 
 has_vulkan_loader() (
-    ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1 ' && exit
+    has_library libvulkan.so.1 && exit
     IFS=:
     for directory in ${LD_LIBRARY_PATH:-}; do
         [ -e "$directory/libvulkan.so.1" ] && exit
@@ -135,10 +133,11 @@ find_missing() {
     done
 }
 
-# Whether a library is where the system looks for libraries.
-has_library() {
+# Whether a library is where the system looks for libraries. An ordinary user's PATH on Debian lacks ldconfig.
+has_library() (
+    PATH=$PATH:/usr/sbin:/sbin
     ldconfig -p 2>/dev/null | grep -qF "$1 "
-}
+)
 
 # need PACKAGE WORDS: the package by Debian's name.
 need() {

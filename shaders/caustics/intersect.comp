@@ -79,8 +79,8 @@ vec4 first_hit(vec3 origin, vec2 slope) {
         return vec4(0.0);
     }
     vec2 path = abs(place_at(origin, slope, bottom) - place_at(origin, slope, top));
-    if (max(path.x, path.y) > float(MOST_STEPS)) {
-        // Under a high and narrow receiver most of a slanting way lies beside the map.
+    if (max(path.x, path.y) > float(plane.map_size)) {
+        // In the box of a high and narrow receiver most of a slanting way lies beside the map.
         vec2 begin = place_at(origin, slope, top);
         vec2 part = part_over_map(begin, place_at(origin, slope, bottom) - begin);
         if (part.x >= part.y) {

@@ -28,7 +28,7 @@ const float LEAST_MOVED = 0.3;
 bool is_hidden(vec2 place, int layer, float height, vec2 slope, float top) {
     vec2 back = -slope * plane.texels_per_m;
     vec2 path = abs(back) * (top - height);
-    if (max(path.x, path.y) > float(MOST_STEPS)) {
+    if (max(path.x, path.y) > float(plane.map_size)) {
         // Beside the map nothing hides it.
         float part = part_over_map(place, back * (top - height)).y;
         top = height + (top - height) * part;
@@ -216,9 +216,10 @@ void main() {
                 row.p = side_in_row(p, q, 0.0, 1.0);
                 row.q = side_in_row(q, r, 0.0, 1.0);
                 row.r = side_in_row(r, p, 0.0, 1.0);
-                float share = (left_of(row, 0.0) - left_of(row, 1.0)) / area_of(p, q, r);
+                float covered = left_of(row, 0.0) - left_of(row, 1.0);
+                float share = covered / area_of(p, q, r);
                 vec2 place = vec2(texel) + 0.5;
-                if (share < 1.0e-6 || is_hidden(place, layer, height, slope, straddler.top)) {
+                if (abs(covered) < 1.0e-6 || is_hidden(place, layer, height, slope, straddler.top)) {
                     continue;
                 }
                 float descent = origin.y - plane.middle - height;

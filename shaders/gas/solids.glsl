@@ -49,8 +49,10 @@ vec2 frustum_segment(vec3 o, vec3 d, vec2 radii) {
     float a = dot(d.xz, d.xz) - slope * slope;
     float b = dot(o.xz, d.xz) - radius * slope;
     float c = dot(o.xz, o.xz) - radius * radius;
-    if (abs(a) < 1.0e-9) {
-        if (abs(b) < 1.0e-12) {
+    // Along the side of the cone, whatever the unit of length.
+    float all = dot(d.xz, d.xz) + slope * slope;
+    if (abs(a) <= 1.0e-7 * all) {
+        if (abs(b) <= 1.0e-7 * sqrt(all)) {
             return c <= 0.0 ? slab : EMPTY_SEGMENT;
         }
         float t = -0.5 * c / b;

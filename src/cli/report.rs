@@ -61,7 +61,10 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
     if arguments.sources.is_empty() && arguments.a.is_none() {
         return Err(Failure::Input("report: name records or a folder, as in: fumarole report fumarole-out".into()));
     }
-    outcome::check_file(&arguments.output)?;
+    if arguments.output.as_os_str() == "-" {
+        return Err(Failure::Input("report -o -: a report is a file; name one, as in -o report.html, or ./-".into()));
+    }
+    file::check_writable(&arguments.output)?;
     outcome::check_apart([&arguments.output], &arguments.documents())?;
     let mut contents = Contents { title: "fumarole".to_owned(), ..Contents::default() };
     for source in &arguments.sources {

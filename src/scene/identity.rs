@@ -104,9 +104,8 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     if !samples.is_empty() {
         return samples;
     }
-    let is_picture = ["png", "tif", "tiff"].iter().any(|known| ending == *known);
     let mut world_files = world_file::endings(path).into_iter().map(|ending| path.with_extension(ending));
-    let world_file = world_files.find(|file| is_picture && file.is_file());
+    let world_file = world_files.find(|file| file.is_file()).filter(|_| height_map::is_picture(path));
     let beside: &[&str] = match () {
         () if ending == "asc" || world_file.is_some() => &["prj"],
         () if BESIDE_A_RASTER.iter().any(|known| ending == *known) => &BESIDE_A_RASTER,
@@ -164,17 +163,19 @@ mod tests {
         assert_eq!(alone, content::sha256(b"raster"));
         write("b.hdr", "header");
         assert_ne!(source_sha256(&raster).unwrap(), alone);
-        let picture = write("d.png", "picture");
-        assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
+        let (mesh, picture) = (write("d.obj", "mesh"), write("d.png", "MM\0*"));
+        assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"MM\0*"));
         write("d.pgw", "place");
         let placed = source_sha256(&picture).unwrap();
-        assert_ne!(placed, content::sha256(b"picture"));
+        assert_ne!(placed, content::sha256(b"MM\0*"));
         write("d.prj", "projection");
         assert_ne!(source_sha256(&picture).unwrap(), placed);
-        let raster = write("h.tif", "raster");
-        assert_eq!(source_sha256(&raster).unwrap(), content::sha256(b"raster"));
-        write("h.TFW", "place");
-        assert_ne!(source_sha256(&raster).unwrap(), content::sha256(b"raster"));
+        let raster = write("h.of-heights", "MM\0*");
+        assert_eq!(source_sha256(&raster).unwrap(), content::sha256(b"MM\0*"));
+        write("h.WLD", "place");
+        write("d.WLD", "place");
+        assert_ne!(source_sha256(&raster).unwrap(), content::sha256(b"MM\0*"));
+        assert_eq!(source_sha256(&mesh).unwrap(), content::sha256(b"mesh"));
         let grid = write("f.asc", "grid");
         let alone = source_sha256(&grid).unwrap();
         assert_eq!(alone, content::sha256(b"grid"));

@@ -1,10 +1,11 @@
 //! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document and leave
-//! no field out, arrows between modules, passes in files of their names, loops that pages bound, a test for each misuse of the Vulkan layer, and no test's files in the
-//! repository.
+//! no field out, arrows between modules, passes in files of their names, loops that pages bound, a test for each misuse of the
+//! Vulkan layer, calls that can be made to fail, and no test's files in the repository.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::cli::program::fumarole;
 
@@ -174,23 +175,38 @@ const ARROWS: [(&str, &[&str]); 8] = [
     ("src/window", &["cli", "papers"]),
 ];
 
-/// Of papers, the command line and the window know the list alone, and papers know no option's spelling.
+/// Of papers the command line knows the list alone, and papers know no option's spelling.
 #[test]
 fn arrows_point_one_way() {
+    let is_no_name = |c: char| !c.is_ascii_alphanumeric() && c != '_';
     let mut wrong = Vec::new();
     let mut look = |folder: &str, is_wrong: &dyn Fn(&str) -> bool| {
         for path in sources(folder) {
             // Tests, and what is made for them, may ask what they like.
-            let is_of_tests = ["tests.rs", "example.rs"].iter().any(|name| path.ends_with(name));
+            if ["tests.rs", "example.rs"].iter().any(|name| path.ends_with(name)) {
+                continue;
+            }
             let text = fs::read_to_string(&path).unwrap();
-            let lines = (1..).zip(text.lines()).take_while(|(_, line)| !is_of_tests && line.trim() != "#[cfg(test)]");
-            wrong.extend(
-                lines.filter(|(_, line)| is_wrong(line)).map(|(n, line)| format!("{}:{n}: {line}", path.display())),
-            );
+            let (mut is_of_tests, mut begins) = (false, false);
+            for (number, line) in (1..).zip(text.lines()) {
+                begins = begins || line == "#[cfg(test)]";
+                if begins && !line.starts_with('#') {
+                    (begins, is_of_tests) = (false, line.ends_with('{'));
+                } else if !begins && !is_of_tests && is_wrong(line) {
+                    wrong.push(format!("{}:{number}: {line}", path.display()));
+                }
+                is_of_tests = is_of_tests && line != "}";
+            }
         }
     };
     for (folder, unknown) in ARROWS {
-        look(folder, &|line| unknown.iter().any(|module| line.contains(&format!("crate::{module}::"))));
+        let names = |line: &str, module: &&str| {
+            let listed = line
+                .strip_prefix("use crate::{")
+                .is_some_and(|list| list.split(is_no_name).any(|name| name == *module));
+            listed || line.contains(&format!("crate::{module}::")) || line.contains(&format!("crate::{module};"))
+        };
+        look(folder, &|line| unknown.iter().any(|module| names(line, module)));
     }
     let names = ["lava", "gas", "caustics", "burning", "terrain"];
     look("src/cli", &|line| names.iter().any(|paper| line.contains(&format!("papers::{paper}"))));
@@ -202,7 +218,7 @@ fn arrows_point_one_way() {
 #[test]
 fn loops_that_may_be_long_stand_on_their_pages() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut missing = Vec::new();
+    let (mut missing, mut sections) = (Vec::new(), String::new());
     for paper in ["lava", "gas", "caustics", "burning", "terrain"] {
         let page = fs::read_to_string(root.join(format!("docs/{paper}.md"))).unwrap();
         let (_, section) = page.split_once("\n## Loops\n").unwrap_or_else(|| panic!("{paper}: no loops"));
@@ -217,6 +233,14 @@ fn loops_that_may_be_long_stand_on_their_pages() {
             if is_long && !section.contains(&format!("`{name}`")) {
                 missing.push(format!("docs/{paper}.md: {name}"));
             }
+        }
+        sections.push_str(section);
+    }
+    for path in fs::read_dir(root.join("shaders/common")).unwrap().map(|file| file.unwrap().path()) {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let is_long = fs::read_to_string(&path).unwrap().lines().any(may_be_long);
+        if is_long && !sections.contains(&format!("`{name}`")) {
+            missing.push(name.to_owned());
         }
     }
     assert!(missing.is_empty(), "{}", missing.join("\n"));
@@ -255,6 +279,83 @@ fn passes_stand_in_files_of_their_names() {
             assert!(stems.contains(pass.replace('-', "_").as_str()), "{paper}: no file of the pass {pass}");
         }
     }
+}
+
+/// Commands that return a result, by the bindings' declarations, each under the name of its method.
+fn fallible_commands() -> BTreeMap<String, String> {
+    // What other systems alone build with need not be there.
+    let rustc = Command::new("rustc").arg("-vV").output().unwrap();
+    let rustc = String::from_utf8(rustc.stdout).unwrap();
+    let host = rustc.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    let metadata = Command::new(env!("CARGO"))
+        .args([
+            "metadata",
+            "--format-version",
+            "1",
+            "--offline",
+            "--locked",
+            "--filter-platform",
+            host,
+            "--manifest-path",
+        ])
+        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
+        .output()
+        .unwrap();
+    assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).unwrap();
+    let ash = metadata["packages"].as_array().unwrap().iter().find(|package| package["name"] == "ash").unwrap();
+    let folder = Path::new(ash["manifest_path"].as_str().unwrap()).parent().unwrap().join("src/vk");
+    let mut commands = BTreeMap::new();
+    for file in ["features.rs", "extensions.rs"] {
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        for declaration in text.split("pub type PFN_vk").skip(1) {
+            let (declaration, _) = declaration.split_once(';').unwrap();
+            let (name, _) = declaration.split_once([' ', '=']).unwrap();
+            if declaration.trim_end().ends_with("-> Result") {
+                // `CreateSwapchainKHR` is `create_swapchain`.
+                let stem = name.trim_end_matches(|c: char| c.is_ascii_uppercase());
+                let small = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
+                let method: String = stem.chars().map(small).collect();
+                commands.insert(method.trim_start_matches('_').to_owned(), format!("vk{name}"));
+            }
+        }
+    }
+    commands
+}
+
+/// The tests' layer makes calls fail by their names: one that it does not know would never.
+#[test]
+fn each_call_that_returns_a_result_can_be_made_to_fail() {
+    /// Calls that fail by other ways: the loader's answers before there is a layer, the two whose failures the layer makes where it
+    /// joins the chain, and those of extensions that it plays itself.
+    const OTHERWISE: [&str; 9] = [
+        "enumerate_instance_extension_properties",
+        "enumerate_instance_layer_properties",
+        "create_instance",
+        "create_device",
+        "acquire_profiling_lock",
+        "enumerate_physical_device_queue_family_performance_query_counters",
+        "get_pipeline_executable_internal_representations",
+        "get_pipeline_executable_properties",
+        "get_pipeline_executable_statistics",
+    ];
+    let read = |folder| sources(folder).iter().map(|path| fs::read_to_string(path).unwrap()).collect::<String>();
+    let code = read("src/gpu") + &read("src/window");
+    let calls = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/layer/calls.rs")).unwrap();
+    let (_, list) = calls.split_once("const RESULTS").unwrap();
+    let stem = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_uppercase()).to_owned();
+    let known: BTreeSet<String> = list.split(';').nth(1).unwrap().split('"').skip(1).step_by(2).map(stem).collect();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    // A method, or a pointer in brackets.
+    let name = |at: usize| code[..at].trim_end_matches(')').rsplit(|c| !is_part(c)).next();
+    let called: BTreeSet<&str> = code.match_indices('(').filter_map(|(at, _)| name(at)).collect();
+    let commands = fallible_commands();
+    assert!(commands.len() > 200, "{}", commands.len());
+    let of_ours = commands.iter().filter(|(method, _)| called.contains(&***method));
+    let (listed, others): (Vec<_>, Vec<_>) = of_ours.partition(|(_, command)| known.contains(&stem(command)));
+    let others: BTreeSet<&str> = others.into_iter().map(|(method, _)| method.as_str()).collect();
+    assert!(listed.len() > 35, "{listed:?}");
+    assert_eq!(others, BTreeSet::from(OTHERWISE), "RESULTS of tests/layer/calls.rs lacks what is on the left alone");
 }
 
 #[test]

@@ -393,7 +393,7 @@ fn reaching(camera: Camera, receivers: &Bounds) -> Camera {
 /// # Errors
 /// [`Error::Scene`] for a map that cannot be read; [`Error::Input`] for a flat map that is to span a range.
 pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Option<f32>) -> Result<WaterMap, Error> {
-    let mut map = source.load_with(MapOptions { overview: 0, has_own_spacing: spacing_m.is_some() })?;
+    let mut map = source.load_with(MapOptions { has_own_spacing: spacing_m.is_some(), ..MapOptions::default() })?;
     if let Some(range_m) = range_m {
         let (low, high) = map.range_m();
         let scale = range_m / (high - low);

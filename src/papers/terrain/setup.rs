@@ -188,7 +188,7 @@ impl Setup {
     }
 
     pub(super) fn map_options(&self) -> MapOptions {
-        MapOptions { overview: self.overview, has_own_spacing: self.spacing_m.is_some() }
+        MapOptions { overview: self.overview, has_own_spacing: self.spacing_m.is_some(), ..MapOptions::default() }
     }
 
     pub(super) fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {

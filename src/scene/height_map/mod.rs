@@ -17,8 +17,8 @@ mod voids;
 mod volcano;
 
 pub use coordinates::Coordinates;
-pub(in crate::scene) use formats::read_text;
 pub(in crate::scene) use formats::vrt::parts as mosaic_parts;
+pub(in crate::scene) use formats::{is_picture, read_text};
 pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
 pub use rows::{RowSource, Rows};

@@ -29,12 +29,14 @@ pub struct MapOptions {
     pub overview: u32,
     /// Another spacing takes the place of the file's: one that no map may have is then no fault, and tells no place either.
     pub has_own_spacing: bool,
+    /// A world file beside a picture does not count, as for the parts of a mosaic that states its place itself.
+    pub is_placed: bool,
 }
 
 /// An overview, of the spacing that the file has.
 impl From<u32> for MapOptions {
     fn from(overview: u32) -> Self {
-        MapOptions { overview, has_own_spacing: false }
+        MapOptions { overview, ..MapOptions::default() }
     }
 }
 

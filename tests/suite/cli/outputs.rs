@@ -192,7 +192,7 @@ fn a_name_that_promises_something_else_is_refused() {
     for option in ["csv", "trace"] {
         long(out.path()).args(&format!("--{option} -")).run().refused(2, &["-", "--json"]);
     }
-    fumarole("report a.json -o -").inside(out.path()).run().refused(2, &["-", "--json"]);
+    fumarole("report a.json -o -").inside(out.path()).run().refused(2, &["-o -", "a report is a file"]);
     assert!(entries(out.path()).is_empty());
 }
 

@@ -50,7 +50,7 @@ fn files_behind_other_files_are_kept() {
         ("all.vrt", mosaic),
         ("x.asc", "grid"),
         ("N00E000.hgt", "tile"),
-        ("land.png", "picture"),
+        ("land.png", "MM\0*"),
         ("land.pgw", "place"),
         ("a.gltf", r#"{"buffers": [{"uri": "a.bin"}]}"#),
         ("a.bin", "buffer"),

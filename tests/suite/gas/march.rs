@@ -96,6 +96,31 @@ fn every_gas_is_marched_as_its_rays_are() {
     });
 }
 
+/// Gas as wide as land, and as a grain of sand, thinner and denser by as much: the unit of length is nothing to a solid.
+#[test]
+fn solids_of_any_size_are_cut_as_their_rays_are() {
+    gpu_test(|device| {
+        for shape in [Shape::Box, Shape::Sphere, Shape::Cylinder, Shape::Frustum { bottom: 0.4, top: 0.9 }] {
+            for size_m in [1e-3_f32, 1.0, 1e5, 9e5] {
+                let texture = SolidTexture { function: DensityFunction::Constant, ..gases()[0].texture };
+                let gas = gases()[0];
+                let half_extent_m = gas.half_extent_m * size_m;
+                let gas = Volume { shape, half_extent_m, tau_per_m: gas.tau_per_m / size_m, texture, ..gas };
+                let mut parameters = Parameters { steps: 12, ..parameters(vec![gas]) };
+                parameters.lights.truncate(1);
+                parameters.camera.eye *= size_m;
+                parameters.camera.target *= size_m;
+                parameters.camera.near_m *= size_m;
+                parameters.camera.far_m *= size_m;
+                let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
+                let worst = worst(&differences(&drawing, &parameters, true, Sampling::Random));
+                println!("{shape:?} of {size_m} m: {worst:.2e}");
+                assert!(worst < 5e-5, "{shape:?} of {size_m} m: {worst}");
+            }
+        }
+    });
+}
+
 /// Several samples of an increment, at random or by blue noise, are those of the rays; and their error is less, or finer.
 #[test]
 fn samples_lie_where_they_are_told() {

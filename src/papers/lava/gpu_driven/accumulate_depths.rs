@@ -82,7 +82,7 @@ fn bands(parameters: &Parameters) -> Vec<AccumulateConstants> {
     // A little more than the radius, which rounding may pass.
     let reach = |spacing_m: f32, count: u32| ((1.001 * radius_m / spacing_m) as i64).min(i64::from(count) - 1);
     let (across, along) = (reach(spacing_m[0], columns), reach(spacing_m[1], rows));
-    let each = (MOST_TAPS / (2 * across + 2)).max(1);
+    let each = (MOST_TAPS / (2 * across + 3)).max(1);
     let band = |first: i64| AccumulateConstants {
         spacing_m,
         columns: [columns as i32, rows as i32],
@@ -121,7 +121,7 @@ mod tests {
             let mut next = bands[0].first_row;
             for band in &bands {
                 assert_eq!(band.first_row, next);
-                assert!(i64::from(band.last_row - band.first_row + 1) * i64::from(2 * band.reach + 2) < 65_535);
+                assert!(i64::from(band.last_row - band.first_row + 1) * i64::from(2 * band.reach + 3) < 65_535);
                 next = band.last_row + 1;
             }
             assert_eq!((bands[0].first_row, next - 1), (-(rows - 1) / 2, (rows - 1) / 2));

@@ -74,22 +74,20 @@ pub(super) fn look_through(
     options: MapOptions,
     voids: &[f64],
 ) -> Result<Option<(HeightMap, bool)>, Error> {
-    let look = |packed: Packed, size_bytes: u64| -> Result<(HeightMap, bool), Fault> {
-        let ((width, height), placement, has_known) = match packed {
-            Packed::Tiff(input) => {
-                let mut picture = Picture::open(size_bytes, input, options)?.in_file(path)?;
-                picture.raw_bytes()?;
-                let has_known = check_samples(&mut picture, voids)?;
-                ((picture.width, picture.height), picture.placement, has_known)
-            }
-            Packed::Png(input) => {
-                let (size, has_known) = png::look_through(size_bytes, input, voids)?;
-                (size, by_world_file(path, size, size, options)?, has_known)
-            }
-        };
-        let map = HeightMap::promised(width, height, Samples::Float(Vec::new())).and_then(|map| placement.place(map));
-        map.map(|map| (map, has_known)).map_err(|error| Fault::foreign(Place::Whole, &error))
-    };
     let Some((packed, size_bytes)) = open(path)? else { return Ok(None) };
-    look(packed, size_bytes).map(Some).map_err(|fault| malformed(path, fault))
+    let fault = |fault| malformed(path, fault);
+    let ((width, height), placement, has_known) = match packed {
+        Packed::Tiff(input) => {
+            let mut picture = Picture::open(size_bytes, input, options).map_err(fault)?.in_file(path)?;
+            picture.raw_bytes().map_err(fault)?;
+            let has_known = check_samples(&mut picture, voids).map_err(fault)?;
+            ((picture.width, picture.height), picture.placement, has_known)
+        }
+        Packed::Png(input) => {
+            let (size, has_known) = png::look_through(size_bytes, input, voids).map_err(fault)?;
+            (size, by_world_file(path, None, size, size, options)?, has_known)
+        }
+    };
+    let map = HeightMap::promised(width, height, Samples::Float(Vec::new())).and_then(|map| placement.place(map));
+    map.map(|map| Some((map, has_known))).map_err(|error| fault(Fault::foreign(Place::Whole, &error)))
 }

@@ -2,12 +2,12 @@ use super::geotiff_check::check_samples;
 use super::placement::{MapCoordinates, Unit, by_world_file};
 use super::stored::Stored;
 use super::{check_compressed, check_unit};
-use crate::scene::HeightMap;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
 use crate::scene::height_map::{MapOptions, shown};
+use crate::scene::{Error, HeightMap};
 use glam::DVec2;
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -38,6 +38,8 @@ pub(super) struct Picture<R: Read + Seek> {
     pub(super) placement: Placement,
     /// Of its file.
     pub(super) size_bytes: u64,
+    /// The unit of its coordinates, where it states no place; nothing where it does.
+    unplaced: Option<Option<Unit>>,
     /// Columns and rows of the data, of which this may be an overview.
     whole: (u32, u32),
     options: MapOptions,
@@ -47,7 +49,7 @@ impl<R: Read + Seek> Picture<R> {
     /// The first picture, or the overview of a number from 1 on, which has its tags.
     pub(super) fn open(size_bytes: u64, input: R, options: impl Into<MapOptions>) -> Result<Self, Fault> {
         let options = options.into();
-        let MapOptions { overview, has_own_spacing } = options;
+        let MapOptions { overview, has_own_spacing, .. } = options;
         let mut limits = Limits::default();
         limits.decoding_buffer_size = MAX_BYTES;
         limits.intermediate_buffer_size = MAX_BYTES;
@@ -60,24 +62,23 @@ impl<R: Read + Seek> Picture<R> {
         }
         let mut tags = Tags { decoder: &mut decoder, size_bytes };
         tags.refuse_scaled_heights()?;
-        let (no_data, coordinates) = (tags.no_data()?, tags.coordinates(whole)?);
+        let (no_data, unit, coordinates) = (tags.no_data()?, tags.keys()?.unit, tags.coordinates(whole)?);
+        let unplaced = coordinates.is_none().then_some(unit);
         if overview > 0 {
             find_overview(&mut decoder, overview)?;
         }
         let ((width, height), bits) = check_shape(&mut decoder, size_bytes)?;
         let placement = match coordinates {
-            Some((coordinates, unit)) => coordinates.in_parts(width, height).placed_or_spaced(unit, has_own_spacing)?,
+            Some(coordinates) => coordinates.in_parts(width, height).placed_or_spaced(unit, has_own_spacing)?,
             None => Placement::Unknown,
         };
-        Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes, whole, options })
+        Ok(Picture { decoder, bits, width, height, no_data, placement, size_bytes, unplaced, whole, options })
     }
 
     /// The picture in the file at `path`: where it states no place, that of a world file beside it.
-    pub(super) fn in_file(self, path: &Path) -> Result<Self, Fault> {
-        let placement = match self.placement {
-            Placement::Unknown => by_world_file(path, self.whole, (self.width, self.height), self.options)?,
-            stated => stated,
-        };
+    pub(super) fn in_file(self, path: &Path) -> Result<Self, Error> {
+        let Some(unit) = self.unplaced else { return Ok(self) };
+        let placement = by_world_file(path, unit, self.whole, (self.width, self.height), self.options)?;
         Ok(Picture { placement, ..self })
     }
 
@@ -203,8 +204,8 @@ impl<R: Read + Seek> Tags<'_, R> {
         check_unit(unit.unwrap_or_default()).map_err(|reason| fault("GDAL_METADATA", reason))
     }
 
-    /// Places of the samples of a picture of so many columns and rows, and their unit.
-    fn coordinates(&mut self, (width, height): (u32, u32)) -> Result<Option<(MapCoordinates, Option<Unit>)>, Fault> {
+    /// Places of the samples of a picture of so many columns and rows.
+    fn coordinates(&mut self, (width, height): (u32, u32)) -> Result<Option<MapCoordinates>, Fault> {
         let keys = self.keys()?;
         // A tie point names the sample's corner, or with PixelIsPoint its centre.
         let offset = if keys.raster_type == Some(2) { 0.0 } else { 0.5 };
@@ -228,7 +229,7 @@ impl<R: Read + Seek> Tags<'_, R> {
             return Err(fault(field, format!("it makes steps of {x} and {y}; both have to be positive")));
         }
         let north_west = corner.map(|corner| corner + DVec2::new(step.x, -step.y) * offset);
-        Ok(Some((MapCoordinates { north_west, step, width, height, field }, keys.unit)))
+        Ok(Some(MapCoordinates { north_west, step, width, height, field }))
     }
 
     /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the

@@ -113,7 +113,7 @@ impl GeoTiffRows {
 
 fn open(path: &Path, options: MapOptions) -> Result<Option<Picture<BufReader<File>>>, Error> {
     let Some(opened) = open_tiff(path)? else { return Ok(None) };
-    tiff(path, opened, options).map(Some).map_err(|fault| malformed(path, fault))
+    tiff(path, opened, options).map(Some)
 }
 
 /// Hands whole rows to `take`, as many as a tile or a strip has, while it says true; true where all are whole numbers by their kind.

@@ -60,7 +60,7 @@ impl Format {
 /// An overview is one of a TIFF.
 pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<HeightMap, Error> {
     let options = options.into();
-    let MapOptions { overview, has_own_spacing } = options;
+    let MapOptions { overview, has_own_spacing, .. } = options;
     if overview > 0 {
         return tiff_overview(path, options);
     }
@@ -86,9 +86,9 @@ pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<Height
             let (mut file, size_bytes) = open()?;
             let magic = magic(&mut file, path)?;
             if magic == PNG_MAGIC {
-                png_map(path, (file, size_bytes), options)
+                return png_map(path, (file, size_bytes), options);
             } else if is_tiff(&magic) {
-                tiff(path, (file, size_bytes), options).and_then(geotiff::read)
+                geotiff::read(tiff(path, (file, size_bytes), options)?)
             } else if matches!(ending.as_str(), "tif" | "tiff" | "png") {
                 Err(Fault::new(Place::Byte(0), "its content is neither TIFF nor PNG; it is damaged or something else"))
             } else {
@@ -112,15 +112,14 @@ fn tiff_overview(path: &Path, options: MapOptions) -> Result<HeightMap, Error> {
         let reason = format!("`overview` {overview}: only a GeoTIFF has any, and {} is none", path.display());
         return Err(Error::HeightMap { reason });
     };
-    tiff(path, (file, size_bytes), options).and_then(geotiff::read).map_err(|fault| malformed(path, fault))
+    geotiff::read(tiff(path, (file, size_bytes), options)?).map_err(|fault| malformed(path, fault))
 }
 
 /// The map of a PNG, whose size is given, at its place.
-fn png_map(path: &Path, (file, size_bytes): (File, u64), options: MapOptions) -> Result<HeightMap, Fault> {
-    let map = png::parse(size_bytes, BufReader::new(file))?;
+fn png_map(path: &Path, (file, size_bytes): (File, u64), options: MapOptions) -> Result<HeightMap, Error> {
+    let map = png::parse(size_bytes, BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
     let size = (map.width(), map.height());
-    let placed = placement::by_world_file(path, size, size, options)?.place(map);
-    placed.map_err(|error| Fault::foreign(Place::Whole, &error))
+    placement::by_world_file(path, None, size, size, options)?.place(map)
 }
 
 /// The picture of a TIFF, whose size is given, at its place.
@@ -128,8 +127,16 @@ fn tiff(
     path: &Path,
     (file, size_bytes): (File, u64),
     options: MapOptions,
-) -> Result<geotiff::Picture<BufReader<File>>, Fault> {
-    geotiff::Picture::open(size_bytes, BufReader::new(file), options)?.in_file(path)
+) -> Result<geotiff::Picture<BufReader<File>>, Error> {
+    let picture = geotiff::Picture::open(size_bytes, BufReader::new(file), options);
+    picture.map_err(|fault| malformed(path, fault))?.in_file(path)
+}
+
+/// True for a TIFF or a PNG that is read by its content.
+pub(in crate::scene) fn is_picture(path: &Path) -> bool {
+    let content = || magic(&mut file::open(path, Asset::HeightMap).ok()?.0, path).ok();
+    Format::of(&ending(path)) == Format::ByContent
+        && content().is_some_and(|magic| magic == PNG_MAGIC || is_tiff(&magic))
 }
 
 /// The file and its size, if it is a TIFF by its content.

@@ -1,7 +1,7 @@
 //! Spacing of the samples of a raster with map coordinates.
 
 use super::read_text;
-use crate::scene::error::{Asset, Fault, Place};
+use crate::scene::error::{Asset, Fault};
 use crate::scene::height_map::grid::Placement;
 use crate::scene::height_map::{Coordinates, Geographic, MapOptions};
 use crate::scene::{Error, file, world_file};
@@ -85,25 +85,36 @@ impl MapCoordinates {
     }
 }
 
-/// The placement that a world file beside a picture states, in the unit that the `.prj` file beside it names; unknown without
-/// a world file. The picture is the `whole` one, or an overview of it of so many columns and rows.
+/// The placement that a world file beside a picture states, in the unit that a `.prj` beside it names, or else in its own; unknown
+/// without a world file. The picture is the `whole` one, or an overview of it of so many columns and rows.
 ///
 /// # Errors
-/// Of the files beside it; as [`MapCoordinates::placed_or_spaced`].
+/// Of the files beside it, and steps that make samples lie outside
+/// [`HeightMap::SPACING_M`](crate::scene::HeightMap::SPACING_M): where samples have a spacing of the user's, neither.
 pub(super) fn by_world_file(
     picture: &Path,
+    own: Option<Unit>,
     whole: (u32, u32),
     (width, height): (u32, u32),
     options: MapOptions,
-) -> Result<Placement, Fault> {
-    let foreign = |error: Error| Fault::foreign(Place::Whole, &error);
-    let Some((_, Coordinates { north_west, step })) = world_file::beside(picture).map_err(foreign)? else {
-        return Ok(Placement::Unknown);
+) -> Result<Placement, Error> {
+    let read = || {
+        let Some((path, Coordinates { north_west, step })) = world_file::beside(picture)? else {
+            return Ok(Placement::Unknown);
+        };
+        let unit = beside(picture)?.or(own);
+        let (north_west, (columns, rows)) = (Some(north_west), whole);
+        let whole = MapCoordinates { north_west, step, width: columns, height: rows, field: "step" };
+        let placed = whole.in_parts(width, height).placed(unit);
+        placed.map_err(|fault| Error::Malformed { path, asset: Asset::WorldFile, fault })
     };
-    let unit = beside(picture).map_err(foreign)?;
-    let whole =
-        MapCoordinates { north_west: Some(north_west), step, width: whole.0, height: whole.1, field: "its world file" };
-    whole.in_parts(width, height).placed_or_spaced(unit, options.has_own_spacing)
+    if options.is_placed {
+        return Ok(Placement::Unknown);
+    }
+    match read() {
+        Err(_) if options.has_own_spacing => Ok(Placement::Unknown),
+        placed => placed,
+    }
 }
 
 /// The unit that the `.prj` file beside a raster names, if there is one.
@@ -139,6 +150,7 @@ pub(super) fn unit(projection: &str) -> Option<Unit> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::height_map::formats::load;
 
     #[test]
     fn projections_name_their_unit() {
@@ -224,5 +236,67 @@ mod tests {
                 && message.contains("; they have to lie 0.000001 to 1000000");
             assert!(is_said && message.len() < 160, "{message}");
         }
+    }
+
+    /// GDAL takes a world file's lines for the middle of the first texel, and a projection beside it for their unit.
+    #[test]
+    fn pictures_lie_where_their_world_files_say() {
+        let folder = tempfile::tempdir().unwrap();
+        let asset = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/maps").join(name);
+        let copy = |from: &str, name: &str| {
+            let path = folder.path().join(name);
+            std::fs::copy(asset(from), &path).unwrap();
+            path
+        };
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let png = copy("topobathy-2000m-uint16.png", "land.png");
+        assert_eq!(load(&png, 0).unwrap().coordinates(), None);
+        write("land.pgw", "30\n0\n0\n-20\n2500000\n6400000\n");
+        let map = load(&png, 0).unwrap();
+        let place = Coordinates { north_west: DVec2::new(2.5e6, 6.4e6), step: DVec2::new(30.0, 20.0) };
+        assert_eq!((map.coordinates(), map.spacing_m()), (Some(place), place.step));
+        write("land.prj", r#"PROJCS["p",UNIT["Foot",0.3048]]"#);
+        assert_eq!(load(&png, 0).unwrap().spacing_m(), place.step * 0.3048);
+        write("land.pgw", "1e-6\n0\n0\n-20\n2500000\n6400000\n");
+        let error = load(&png, 0).unwrap_err().to_string();
+        assert!(error.contains("world file ") && error.contains("land.pgw: step: it makes samples lie"), "{error}");
+        assert_eq!(
+            load(&png, MapOptions { has_own_spacing: true, ..MapOptions::default() }).unwrap().coordinates(),
+            None
+        );
+        write("land.pgw", "30\n0\n");
+        let error = load(&png, 0).unwrap_err().to_string();
+        assert!(error.contains("land.pgw: it has 2 numbers"), "{error}");
+
+        // A TIFF's own place is the one that holds.
+        let placed = copy("topobathy-int16.tif", "placed.tif");
+        write("placed.tfw", "30\n0\n0\n-20\n2500000\n6400000\n");
+        assert_eq!(
+            load(&placed, 0).unwrap().coordinates(),
+            load(&asset("topobathy-int16.tif"), 0).unwrap().coordinates()
+        );
+        let bare = folder.path().join("bare.tif");
+        let mut file = tiff::encoder::TiffEncoder::new(std::fs::File::create(&bare).unwrap()).unwrap();
+        file.write_image::<tiff::encoder::colortype::Gray8>(3, 2, &[1, 2, 3, 4, 5, 6]).unwrap();
+        write("bare.TFW", "0.01 0 0 -0.02 11 46");
+        let map = load(&bare, 0).unwrap();
+        let place = map.geographic().unwrap();
+        assert_eq!((place.west_deg, place.north_deg, place.step_deg), (11.0, 46.0, DVec2::new(0.01, 0.02)));
+        // In a mosaic that states a place itself, nothing else is asked.
+        let source = "<SimpleSource><SourceFilename relativeToVRT='1'>bare.tif</SourceFilename><SrcRect xOff='0' yOff='0' \
+                      xSize='3' ySize='2'/><DstRect xOff='0' yOff='0' xSize='3' ySize='2'/></SimpleSource>";
+        let mosaic = |place: &str| {
+            write(
+                "all.vrt",
+                &format!(
+                    "<VRTDataset rasterXSize='3' rasterYSize='2'>{place}<VRTRasterBand>{source}</VRTRasterBand></VRTDataset>"
+                ),
+            );
+            load(&folder.path().join("all.vrt"), 0).unwrap()
+        };
+        assert_eq!(mosaic("").geographic(), Some(place));
+        assert_eq!(mosaic("<GeoTransform>5e5, 7, 0, 6e6, 0, -7</GeoTransform>").spacing_m(), DVec2::splat(7.0));
+        let rows = crate::scene::RowSource::geotiff(&bare, MapOptions::default()).unwrap().unwrap();
+        assert_eq!((rows.map().geographic(), rows.map().spacing_m()), (Some(place), map.spacing_m()));
     }
 }

@@ -1,5 +1,4 @@
 use super::*;
-use crate::scene::height_map::Coordinates;
 use crate::scene::{HeightMapSource, Samples};
 use glam::DVec2;
 use proptest::prelude::*;
@@ -55,47 +54,6 @@ fn files_written_by_gdal_hold_the_same_heights() {
         let expected = ((reference.height_m(column, row) + 1_500.0) / 15.0).floor();
         assert!(is_void(column, row) || coarse.height_m(column, row) == expected, "{column}, {row}");
     }
-}
-
-/// GDAL takes a world file's lines for the middle of the first texel, and a projection beside it for their unit.
-#[test]
-fn pictures_lie_where_their_world_files_say() {
-    let folder = tempfile::tempdir().unwrap();
-    let copy = |from: &str, name: &str| {
-        let path = folder.path().join(name);
-        std::fs::copy(asset(from), &path).unwrap();
-        path
-    };
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    let png = copy("topobathy-2000m-uint16.png", "land.png");
-    assert_eq!(load(&png, 0).unwrap().coordinates(), None);
-    write("land.pgw", "30\n0\n0\n-20\n2500000\n6400000\n");
-    let map = load(&png, 0).unwrap();
-    let place = Coordinates { north_west: DVec2::new(2.5e6, 6.4e6), step: DVec2::new(30.0, 20.0) };
-    assert_eq!((map.coordinates(), map.spacing_m()), (Some(place), place.step));
-    write("land.prj", r#"PROJCS["p",UNIT["Foot",0.3048]]"#);
-    assert_eq!(load(&png, 0).unwrap().spacing_m(), place.step * 0.3048);
-    write("land.pgw", "1e-6\n0\n0\n-20\n2500000\n6400000\n");
-    let error = load(&png, 0).unwrap_err().to_string();
-    assert!(error.contains("land.png: its world file: it makes samples lie"), "{error}");
-    assert_eq!(load(&png, MapOptions { overview: 0, has_own_spacing: true }).unwrap().coordinates(), None);
-    write("land.pgw", "30\n0\n");
-    let error = load(&png, 0).unwrap_err().to_string();
-    assert!(error.contains("land.pgw: it has 2 numbers"), "{error}");
-
-    // A TIFF's own place is the one that holds.
-    let placed = copy("topobathy-int16.tif", "placed.tif");
-    write("placed.tfw", "30\n0\n0\n-20\n2500000\n6400000\n");
-    assert_eq!(load(&placed, 0).unwrap().coordinates(), load_asset("topobathy-int16.tif").coordinates());
-    let bare = folder.path().join("bare.tif");
-    let mut file = tiff::encoder::TiffEncoder::new(std::fs::File::create(&bare).unwrap()).unwrap();
-    file.write_image::<tiff::encoder::colortype::Gray8>(3, 2, &[1, 2, 3, 4, 5, 6]).unwrap();
-    write("bare.TFW", "0.01 0 0 -0.02 11 46");
-    let map = load(&bare, 0).unwrap();
-    let place = map.geographic().unwrap();
-    assert_eq!((place.west_deg, place.north_deg, place.step_deg), (11.0, 46.0, DVec2::new(0.01, 0.02)));
-    let rows = crate::scene::RowSource::geotiff(&bare, MapOptions::default()).unwrap().unwrap();
-    assert_eq!((rows.map().geographic(), rows.map().spacing_m()), (Some(place), map.spacing_m()));
 }
 
 #[test]

@@ -60,7 +60,8 @@ struct Part {
 pub(super) fn load(path: &Path, has_own_spacing: bool) -> Result<HeightMap, Error> {
     let text = any_file::read_text(path, MOST_BYTES).map_err(|source| file::failed(path, Asset::HeightMap, source))?;
     let mosaic = Mosaic::parse(&text).map_err(|fault| malformed(path, fault))?;
-    mosaic.assemble(path, &text, MapOptions { overview: 0, has_own_spacing })
+    let is_placed = mosaic.coordinates.is_some();
+    mosaic.assemble(path, &text, MapOptions { overview: 0, has_own_spacing, is_placed })
 }
 
 /// The files of a mosaic's parts that are there.
