@@ -1,4 +1,5 @@
-// What the lava shines with at a place of its surface: the constant orange of section 7.2 by its height, or a black body's light by its
+// What the lava shines with at a place of its surface: the constant orange of section 7.2 by its height in the space, which is one high
+// in the thesis, or a black body's light by its
 // temperature.
 
 #include "lava/emission.glsl"
@@ -31,5 +32,5 @@ float kelvin_at(vec3 place_m) {
 // that a branch on constants sees.
 vec3 glow_of(vec3 place_m) {
     vec3 light = scene.per_brightest * emitted(kelvin_at(place_m));
-    return mix(scene.glow * (scene.space_m.y - place_m.y), light, scene.is_blackbody);
+    return mix(scene.glow * (1.0 - place_m.y / scene.space_m.y), light, scene.is_blackbody);
 }

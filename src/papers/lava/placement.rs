@@ -70,8 +70,11 @@ impl Object {
     }
 }
 
+/// All that ends within so many distances of the near plane is small enough to bring that nearer.
+const NEAR_PLANES: f32 = 20.0;
+
 /// The camera with its near and far plane moved so that space and objects lie between them, where they do not: a view from
-/// far away is no reason for a black picture. `aspect` is the picture's width over height.
+/// far away, or of a space of centimetres, is no reason for a black picture. `aspect` is the picture's width over height.
 pub fn reaching(camera: &Camera, space_m: Vec3, meshes: &[Mesh], aspect: f32) -> Camera {
     let space = Bounds { min: Vec3::ZERO, max: space_m };
     let all: Vec<Bounds> = meshes.iter().map(Mesh::bounds).chain([space]).collect();
@@ -79,6 +82,9 @@ pub fn reaching(camera: &Camera, space_m: Vec3, meshes: &[Mesh], aspect: f32) ->
     let depth = |corner: Vec3| (corner - camera.eye).dot(forward);
     let farthest = |b: &Bounds| depth(Vec3::select(forward.cmpgt(Vec3::ZERO), b.max, b.min));
     let far_m = 1.01 * all.iter().map(farthest).fold(0.0, f32::max);
+    if 0.0 < far_m && far_m < NEAR_PLANES * camera.near_m {
+        return Camera { near_m: far_m * camera.near_m / camera.far_m, far_m, ..*camera };
+    }
     if far_m <= camera.far_m || !far_m.is_finite() {
         return *camera;
     }
@@ -275,6 +281,10 @@ mod tests {
         let near = crate::papers::lava::CAMERAS[0].1;
         let space = Vec3::new(4.0, 1.0, 1.0);
         assert_eq!(reaching(&near, space, &[], 1.5), near);
+        let small = Camera { eye: 1e-3 * near.eye, target: 1e-3 * near.target, ..near };
+        let camera = reaching(&small, 1e-3 * space, &[], 1.5);
+        assert!(camera.near_m < 3e-5 && (0.004..0.01).contains(&camera.far_m), "{camera:?}");
+        assert_eq!(space_warning(&camera, 1e-3 * space, (800, 600)), None);
         let away = Camera { eye: Vec3::new(2.0, 3000.0, 4000.0), ..near };
         let camera = reaching(&away, space, &[], 1.5);
         assert!(camera.near_m > 3500.0 && camera.near_m < 4999.0 && camera.far_m > 5000.0, "{camera:?}");

@@ -42,6 +42,7 @@ pub mod properties;
 mod ranges;
 mod render;
 mod report;
+mod scales;
 mod shaders;
 mod shards;
 mod slurm;
