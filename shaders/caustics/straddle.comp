@@ -219,7 +219,7 @@ void main() {
                 float covered = left_of(row, 0.0) - left_of(row, 1.0);
                 float share = covered / area_of(p, q, r);
                 vec2 place = vec2(texel) + 0.5;
-                if (abs(covered) < 1.0e-6 || is_hidden(place, layer, height, slope, straddler.top)) {
+                if (share <= 0.0 || abs(covered) < 1.0e-6 || is_hidden(place, layer, height, slope, straddler.top)) {
                     continue;
                 }
                 float descent = origin.y - plane.middle - height;

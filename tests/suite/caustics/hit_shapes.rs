@@ -256,3 +256,18 @@ fn a_high_post_is_lit_alike_on_maps_of_two_sizes() {
         assert!(small.iter().zip(large).all(|(small, large)| *small > 0.01 && (large / small - 1.0).abs() < 0.03));
     });
 }
+
+/// Few triangles over many texels: what rounding has of a beam beside its edges is no light, and no less than none.
+#[test]
+fn rounding_at_the_edges_of_large_beams_is_no_light() {
+    gpu_test(|device| {
+        for mesh in [shapes::teapot(), shapes::sphere(48, 24)] {
+            let waves = WaveParameters { count: 12, amplitude_m: 0.2, wavelength_m: 1.2 };
+            let parameters = Parameters { waves, map_size: 512, water_triangles: 300, ..parameters(OVERHEAD) };
+            let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&sunk(&mesh)));
+            let greatest = drawing.target("caustics-map").iter().copied().fold(0.0, f32::max);
+            println!("{}: {greatest}", mesh.name);
+            assert!((1.0..1000.0).contains(&greatest), "{}: {greatest}", mesh.name);
+        }
+    });
+}
