@@ -140,8 +140,8 @@ fn a_constant_colour_comes_out_constant() {
             (Shading::Rock, 1.0, 0.3, Tone::Shoulder),
             (Shading::Color, 1.0, 1.0, Tone::Clip),
             (Shading::Color, 1.0, 0.7, Tone::Shoulder),
-            (Shading::Lava, 0.5, 4.0, Tone::Shoulder),
-            (Shading::Lava, 0.5, 2.0, Tone::Clip),
+            (Shading::Lava, 0.5, 2.0, Tone::Shoulder),
+            (Shading::Lava, 2.0, 1.0, Tone::Clip),
         ] {
             let parameters = Parameters {
                 shading,
@@ -154,12 +154,12 @@ fn a_constant_colour_comes_out_constant() {
             };
             let mut surface = ridge(&parameters);
             if shading != Shading::Rock {
-                // The colour depends on the height.
+                // The colour depends on the height, as a part of the space's.
                 surface.heights.fill(0.25);
             }
             let stage = stage(device, &parameters, &surface, &rock);
             let texel = Vec3::new(200.0, 100.0, 50.0) / 255.0;
-            let color = parameters.color * (space_y - 0.25);
+            let color = parameters.color * (1.0 - 0.25 / space_y);
             let expected = match shading {
                 Shading::Rock => texel,
                 Shading::Color => color,
