@@ -168,12 +168,12 @@ fn without_paper(verb: &OsStr, papers: &[Paper]) -> Option<Failure> {
 
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
+    gpu::keep_errors_untraced();
     if let Some(code) = shader_folder::answer() {
         return code;
     }
     watch::keep_ignored();
     gpu::pin_software_threads();
-    gpu::keep_errors_untraced();
     let papers = listed();
     let command = umbrella_command(&papers);
     spelling::learn(&command);
@@ -221,12 +221,12 @@ pub fn umbrella() -> ExitCode {
 
 /// Runs the own binary of a listed paper.
 pub fn binary<S: Study>() -> ExitCode {
+    gpu::keep_errors_untraced();
     if let Some(code) = shader_folder::answer() {
         return code;
     }
     watch::keep_ignored();
     gpu::pin_software_threads();
-    gpu::keep_errors_untraced();
     // Found by its name: were `Paper::of::<S>` named here, each binary would compile the whole paper once more.
     let Some(paper) = listed().into_iter().find(|paper| paper.name == S::PAPER) else {
         outcome::say(&format!("{} is not in the list of papers; add it there (src/papers/mod.rs)", S::PAPER));

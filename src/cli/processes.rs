@@ -98,12 +98,14 @@ fn failed(reason: impl Display) -> Failure {
     Failure::Running(format!("measuring in a fresh process: {reason}"))
 }
 
-/// Exit status of a process, and its standard error.
+/// Exit status of a process, and its output.
 pub struct Ended {
     /// As the system tells it.
     pub status: ExitStatus,
     /// It was ended because its time was over.
     pub is_late: bool,
+    /// Its standard output, where that is piped.
+    pub output: Vec<u8>,
     errors: String,
 }
 
@@ -133,22 +135,28 @@ impl Ended {
 }
 
 /// Runs a process to its end. After an interruption it has [`PATIENCE`] to end by itself, as it does when the terminal has
-/// told it too; then it is told, and a while later ended, so that none outlives us.
+/// told it too; then it is told, and a while later ended, so that none outlives us. What it prints is for nobody.
 pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
-    finish_within(command, interrupted, None)
+    finish_within(command.stdout(Stdio::null()), interrupted, None)
 }
 
-/// The same, and ends the process when the time is over.
+/// The same, and ends the process when the time is over. Its standard output is what `command` says.
 pub fn finish_within(command: &mut Command, interrupted: &AtomicBool, end: Option<Instant>) -> io::Result<Ended> {
-    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-    let pipe = child.stderr.take();
-    let errors = thread::Builder::new().spawn(move || {
-        let mut bytes = Vec::new();
-        // What cannot be read is not said.
-        let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
-        String::from_utf8_lossy(&bytes).into_owned()
-    });
-    let errors = errors.or_else(|error| child.kill().and_then(|()| child.wait()).and(Err(error)))?;
+    let mut child = command.stderr(Stdio::piped()).spawn()?;
+    // What cannot be read is not said.
+    let read = |pipe: Option<Box<dyn Read + Send>>| {
+        thread::Builder::new().spawn(move || {
+            let mut bytes = Vec::new();
+            let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
+            bytes
+        })
+    };
+    let errors = read(child.stderr.take().map(|pipe| Box::new(pipe) as _));
+    let output = read(child.stdout.take().map(|pipe| Box::new(pipe) as _));
+    let (errors, output) = match (errors, output) {
+        (Ok(errors), Ok(output)) => (errors, output),
+        (Err(error), _) | (_, Err(error)) => return child.kill().and_then(|()| child.wait()).and(Err(error)),
+    };
     let (mut deadline, mut is_told, mut is_late) = (None, false, false);
     let status = loop {
         if let Some(status) = child.try_wait()? {
@@ -169,7 +177,8 @@ pub fn finish_within(command: &mut Command, interrupted: &AtomicBool, end: Optio
         }
         thread::sleep(Duration::from_millis(20));
     };
-    Ok(Ended { status, is_late, errors: errors.join().unwrap_or_default() })
+    let errors = String::from_utf8_lossy(&errors.join().unwrap_or_default()).into_owned();
+    Ok(Ended { status, is_late, output: output.join().unwrap_or_default(), errors })
 }
 
 /// Asks a process to end and to keep what is finished. False where that cannot be asked.

@@ -1,8 +1,8 @@
-//! `--shader-dir`: a process of its own compiles the folder first, within limits. A short text can take all memory, stack or time
-//! of a compiler, and what ends a compiler would end the program.
+//! `--shader-dir`: a process of its own compiles the folder, within limits. A short text can take all memory, stack or time of a
+//! compiler, and what ends a compiler would end the program.
 
 use std::ffi::OsString;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::OnceLock;
@@ -47,10 +47,12 @@ pub fn answer() -> Option<ExitCode> {
         }
         limits.set_for(text_bytes);
     });
-    Some(ExitCode::from(compiled.map_or_else(|error| Failure::from(error).report(), |_| 0)))
+    // What does not arrive is compiled once more.
+    let handed_over = compiled.map(|compiled| compiled.hand_over(BufWriter::new(io::stdout())));
+    Some(ExitCode::from(handed_over.map_or_else(|error| Failure::from(error).report(), |_| 0)))
 }
 
-/// Tries whether the compilers live through the shaders of a folder.
+/// Compiles the shaders of a folder for this process, so that nothing in them ends it.
 ///
 /// # Errors
 /// [`Failure::Input`] for a folder that is refused, and for a shader at which a compiler came to its end; [`Failure::Running`] where
@@ -61,10 +63,13 @@ pub fn check(folder: Option<&Path>) -> Result<(), Failure> {
     let failed =
         |e: io::Error| Failure::Running(format!("{compiling}: {e}; let another process be started and try again"));
     let mut command = Command::new(std::env::current_exe().map_err(failed)?);
-    command.args([OsString::from(VERB), folder.into()]).stdin(Stdio::null());
+    command.args([OsString::from(VERB), folder.into()]).stdin(Stdio::null()).stdout(Stdio::piped());
     let ended = finish_within(&mut command, interrupted(), Some(Instant::now() + PATIENCE)).map_err(failed)?;
     match ended.status.code() {
-        Some(0) => return Ok(()),
+        Some(0) => {
+            gpu::take_compiled(&ended.output);
+            return Ok(());
+        }
         // Told in the words that it would have here.
         Some(REFUSED) => return Err(ended.failure(ended.message())),
         _ => {}

@@ -13,6 +13,7 @@ use super::live::Kind;
 use super::pass_info::Binary;
 use super::physical::{Feature, PhysicalDevice};
 use super::pipeline_store::PipelineStore;
+use super::replacements::Replacements;
 use crate::content;
 use crate::shader_build::{self, EMBEDDED, Interface, Stage, embedded_interface};
 
@@ -146,51 +147,6 @@ fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
         GEOMETRY => !physical.has(Feature::GeometryShader),
         other => !ALWAYS.contains(&other),
     })
-}
-
-/// Bytes of the binaries that are built in.
-pub fn built_in_shader_bytes() -> u64 {
-    let words = |shader: &shader_build::EmbeddedShader| shader.glslang.len() + shader.naga.map_or(0, <[u32]>::len);
-    EMBEDDED.iter().map(|shader| 4 * words(shader) as u64).sum()
-}
-
-/// Shaders of a folder, compiled.
-pub struct Replacements {
-    shaders: Vec<shader_build::CompiledShader>,
-    folder: String,
-}
-
-impl Replacements {
-    /// Compiles the folder, if one is given; it needs no device.
-    ///
-    /// # Errors
-    /// As [`ShaderLibrary::new`].
-    pub fn read(folder: Option<&Path>) -> Result<Self, Error> {
-        Replacements::read_with(folder, &mut |_, _| ())
-    }
-
-    /// The same, and calls `begin` with a shader's name and the bytes of its text before it goes to the compilers.
-    ///
-    /// # Errors
-    /// As [`ShaderLibrary::new`].
-    pub fn read_with(folder: Option<&Path>, begin: &mut dyn FnMut(&str, usize)) -> Result<Self, Error> {
-        let Some(dir) = folder else { return Ok(Replacements { shaders: Vec::new(), folder: String::new() }) };
-        let folder = dir.display().to_string();
-        match replace(dir, begin) {
-            Ok(shaders) => Ok(Replacements { shaders, folder }),
-            Err(problem) => Err(Error::Shader { name: folder, problem }),
-        }
-    }
-}
-
-/// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.
-fn replace(dir: &Path, begin: &mut dyn FnMut(&str, usize)) -> Result<Vec<shader_build::CompiledShader>, String> {
-    let shaders = shader_build::compile_dir_with(dir, EMBEDDED, begin).map_err(|e| e.to_string())?;
-    if shaders.iter().any(|s| EMBEDDED.iter().any(|built_in| built_in.name == s.name)) {
-        Ok(shaders)
-    } else {
-        Err(format!("none of its {} shaders replaces a built-in one; lay it out as shaders/", shaders.len()))
-    }
 }
 
 /// One stage's module with its interface.

@@ -1,8 +1,11 @@
 //! Includes, resolved before either compiler sees the text, and the way back from a line of that text to its file.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
 use super::error::{DirectiveProblem, Error};
 use super::variants::{self, Definition};
@@ -27,21 +30,22 @@ impl Source {
     /// A file that cannot be read, a first line other than `#version 450`, an include that is misspelt, missing, cyclic
     /// or conditional, variants that are misspelt or misplaced, and a text that is too long.
     pub fn read_variants(root: &Path, file: &str) -> Result<Vec<(String, Source)>, Error> {
-        let (variants, _) = Source::list_variants(root, file)?;
+        let files = Files::of(root);
+        let (variants, _) = Source::list_variants(&files, file)?;
         let read = |definitions: Vec<Definition>| {
             let name = variants::shader_name(file, &definitions);
-            Ok((name, Source::read(root, file, definitions)?))
+            Ok((name, Source::read(&files, file, definitions)?))
         };
         variants.into_iter().map(read).collect()
     }
 
-    /// The variants that `file` (a path below `root`) makes, by their definitions, and the bytes that it has.
+    /// The variants that `file` (a path below the folder of `files`) makes, by their definitions, and the bytes that it has.
     ///
     /// # Errors
     /// A file that cannot be read, and variants that are misspelt.
-    pub(super) fn list_variants(root: &Path, file: &str) -> Result<(Vec<Vec<Definition>>, usize), Error> {
-        let path = root.join(file);
-        let text = read_text(root, &path)?;
+    pub(super) fn list_variants(files: &Files<'_>, file: &str) -> Result<(Vec<Vec<Definition>>, usize), Error> {
+        let path = files.root.join(file);
+        let text = files.text(&path)?;
         let pragma = lines(&text).find_map(|(line, _, directive)| match directive {
             Some(("pragma", rest)) => Some((line, variant_list(rest)?)),
             _ => None,
@@ -60,14 +64,14 @@ impl Source {
     /// # Errors
     /// A file that cannot be read, a first line other than `#version 450`, an include that is misspelt, missing, cyclic
     /// or conditional, variants that are misplaced, and a text that is too long.
-    pub(super) fn read(root: &Path, file: &str, definitions: Vec<Definition>) -> Result<Source, Error> {
-        let path = root.join(file);
-        let text = read_text(root, &path)?;
+    pub(super) fn read(files: &Files<'_>, file: &str, definitions: Vec<Definition>) -> Result<Source, Error> {
+        let path = files.root.join(file);
+        let text = files.text(&path)?;
         if text.lines().next().map(str::trim_end) != Some("#version 450") {
             return Err(Error::Version { path });
         }
         let mut source = Source { text: String::new(), definitions, files: vec![path], origins: Vec::new() };
-        source.append(root, &text, &mut vec![0])?;
+        source.append(files, &text, &mut vec![0])?;
         Ok(source)
     }
 
@@ -83,7 +87,7 @@ impl Source {
     }
 
     /// Appends the text of the file on top of `stack` (indices into `files`, includer first).
-    fn append(&mut self, root: &Path, text: &str, stack: &mut Vec<usize>) -> Result<(), Error> {
+    fn append(&mut self, files: &Files<'_>, text: &str, stack: &mut Vec<usize>) -> Result<(), Error> {
         let file = stack[stack.len() - 1];
         let mut condition_depth = 0_usize;
         let mut has_variants = false;
@@ -97,10 +101,10 @@ impl Source {
                     let name = quoted(rest).ok_or_else(|| problem(DirectiveProblem::IncludeSyntax))?;
                     let name = variants::substitute(name, &self.definitions);
                     let path =
-                        resolve(root, &name).ok_or_else(|| problem(DirectiveProblem::IncludeMissing(name.clone())))?;
+                        files.find(&name).ok_or_else(|| problem(DirectiveProblem::IncludeMissing(name.clone())))?;
                     match self.files.iter().position(|known| *known == path) {
                         Some(known) if stack.contains(&known) => {
-                            let chain = self.describe_cycle(root, stack, known);
+                            let chain = self.describe_cycle(files.root, stack, known);
                             return Err(problem(DirectiveProblem::IncludeCycle(chain)));
                         }
                         Some(_) => self.push_line("", file, line_number)?,
@@ -111,10 +115,10 @@ impl Source {
                             if self.files.len() == MOST_FILES {
                                 return Err(problem(DirectiveProblem::IncludeCount));
                             }
-                            let included = read_text(root, &path)?;
+                            let included = files.text(&path)?;
                             self.files.push(path);
                             stack.push(self.files.len() - 1);
-                            self.append(root, &included, stack)?;
+                            self.append(files, &included, stack)?;
                             stack.pop();
                         }
                     }
@@ -175,6 +179,36 @@ const MOST_TEXT: usize = 512 << 10;
 /// That a shader includes; our own include 25. Each is looked for among those before it.
 const MOST_FILES: usize = 512;
 
+/// The files of a shader folder, each read once: hundreds of shaders include the same ones.
+pub(super) struct Files<'a> {
+    root: &'a Path,
+    texts: RefCell<HashMap<PathBuf, Rc<str>>>,
+}
+
+impl<'a> Files<'a> {
+    /// None of them is read yet.
+    pub(super) fn of(root: &'a Path) -> Self {
+        Files { root, texts: RefCell::default() }
+    }
+
+    fn text(&self, path: &Path) -> Result<Rc<str>, Error> {
+        if let Some(text) = self.texts.borrow().get(path) {
+            return Ok(text.clone());
+        }
+        let text: Rc<str> = read_text(self.root, path)?.into();
+        self.texts.borrow_mut().insert(path.to_owned(), text.clone());
+        Ok(text)
+    }
+
+    /// The existing file below the root that an include names.
+    fn find(&self, name: &str) -> Option<PathBuf> {
+        let below_root = |part| matches!(part, Component::Normal(_));
+        let path = self.root.join(name);
+        let is_there = || self.texts.borrow().contains_key(&path) || path.is_file();
+        (Path::new(name).components().all(below_root) && is_there()).then_some(path)
+    }
+}
+
 /// The text of a regular file below `root`, symbolic links followed: a compiler's message shows what it read.
 fn read_text(root: &Path, path: &Path) -> Result<String, Error> {
     let read = || {
@@ -195,13 +229,6 @@ fn read_text(root: &Path, path: &Path) -> Result<String, Error> {
         Ok(text)
     };
     read().map_err(|source| Error::Read { path: path.to_owned(), source })
-}
-
-/// The existing file below `root` that an include names.
-fn resolve(root: &Path, name: &str) -> Option<PathBuf> {
-    let below_root = |part| matches!(part, Component::Normal(_));
-    let path = root.join(name);
-    (Path::new(name).components().all(below_root) && path.is_file()).then_some(path)
 }
 
 /// The lines of a text with their numbers, from 1, and those outside comments that are directives split as one.

@@ -75,6 +75,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
+use include::Files;
 use variants::Definition;
 
 pub use agreement::check_same_interface;
@@ -204,25 +205,33 @@ impl Diagnostic {
 /// A shader that naga refuses, or gives another interface, is no error here but the reason in
 /// [`CompiledShader::naga`], which [`check_exceptions`] judges.
 pub fn compile_dir(root: &Path, known: &[EmbeddedShader]) -> Result<Vec<CompiledShader>, Error> {
-    compile_dir_with(root, known, &mut |_, _| ())
+    compile_dir_with(root, &|name, sha256| find(known, name, sha256), &mut |_, _| ())
 }
 
-/// The same, and calls `begin` with a shader's name and the bytes of its text before it goes to the compilers.
+/// The shader of that name and text among `known`, which are sorted by name.
+pub fn find(known: &[EmbeddedShader], name: &str, text_sha256: &[u8; 32]) -> Option<CompiledShader> {
+    let at = known.binary_search_by(|known| known.name.cmp(name)).ok()?;
+    (known[at].text_sha256 == *text_sha256).then(|| CompiledShader::from(&known[at]))
+}
+
+/// The same, with what is `known` of a name and the SHA-256 of a text, and calls `begin` with a shader's name and the bytes of its
+/// text before it goes to the compilers.
 ///
 /// # Errors
 /// As [`compile_dir`].
 pub fn compile_dir_with(
     root: &Path,
-    known: &[EmbeddedShader],
+    known: &dyn Fn(&str, &[u8; 32]) -> Option<CompiledShader>,
     begin: &mut dyn FnMut(&str, usize),
 ) -> Result<Vec<CompiledShader>, Error> {
-    let mut files = Vec::new();
-    list_files(root, "", 0, &mut files)?;
+    let mut listed = Vec::new();
+    list_files(root, "", 0, &mut listed)?;
+    let files = Files::of(root);
     let too_many = |of, limit| Err(Error::TooMany { path: root.to_owned(), of, limit });
     let mut shaders = Vec::new();
     let mut limit = SPARE_BYTES;
-    for (file, stage) in &files {
-        let (variants, bytes) = Source::list_variants(root, file)?;
+    for (file, stage) in &listed {
+        let (variants, bytes) = Source::list_variants(&files, file)?;
         limit += TIMES_FILES * bytes as u64;
         if shaders.len() + variants.len() > MOST_SHADERS {
             return too_many("shaders, variants among them", MOST_SHADERS);
@@ -235,7 +244,7 @@ pub fn compile_dir_with(
         let files = [twice[0].1.clone(), twice[1].1.clone()];
         return Err(Error::MadeTwice { shader: twice[0].0.clone(), files });
     }
-    let read = |(_, file, _, variant): &(_, &String, _, Vec<Definition>)| Source::read(root, file, variant.clone());
+    let read = |(_, file, _, variant): &(_, &String, _, Vec<Definition>)| Source::read(&files, file, variant.clone());
     // Before the first is compiled, which takes longer; one text at a time, or many large ones would be in memory.
     let mut bytes = 0;
     for shader in &shaders {
@@ -290,14 +299,12 @@ fn compile(
     name: &str,
     stage: Stage,
     source: &Source,
-    known: &[EmbeddedShader],
+    known: &dyn Fn(&str, &[u8; 32]) -> Option<CompiledShader>,
     begin: &mut dyn FnMut(&str, usize),
 ) -> Result<CompiledShader, Error> {
     let text_sha256 = Sha256::digest(&source.text).into();
-    if let Ok(at) = known.binary_search_by(|known| known.name.cmp(name))
-        && known[at].text_sha256 == text_sha256
-    {
-        return Ok(CompiledShader::from(&known[at]));
+    if let Some(known) = known(name, &text_sha256) {
+        return Ok(known);
     }
     begin(name, source.text.len());
     let glslang = glslang::compile(stage, &source.text)

@@ -57,6 +57,7 @@ impl<'a> Children<'a> {
         let mut command = Command::new(&self.program);
         // Its standard input ends when this process does, and it with it.
         command.args(self.arguments).arg("--step-report").arg(report.path()).args(step).stdin(Stdio::piped());
+        command.stdout(Stdio::null());
         let ended = finish_within(&mut command, interrupted(), end).map_err(|e| failed(&e))?;
         let wall_s = started.elapsed().as_secs_f64();
         let text = file::read_text(report.path(), MAX_REPORT_BYTES).ok().filter(|_| ended.status.success());

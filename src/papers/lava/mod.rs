@@ -156,8 +156,8 @@ pub struct Lava {
     meshes: Vec<Mesh>,
     /// Grid points that the last frame accepted, as far as the host knows.
     accepted: Option<Accepted>,
-    /// On objects under the surface of the last frame.
-    buried: Vec<String>,
+    /// On the surface of the last frame: objects under it, holes in it.
+    of_surface: Vec<String>,
     /// `None` but for a picture of particles instead of the surface.
     points: Option<ParticlePoints>,
     lacks_geometry_stage: bool,
@@ -228,22 +228,21 @@ impl Paper for Lava {
         }
     }
 
-    /// Looks at what was accepted, and for objects under the surface.
+    /// Looks at what was accepted, and at the surface: for objects under it, and slopes that its splats leave holes in.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         self.animate.sph().map_or(Ok(()), |sph| sph.check(shaders.device()))?;
         self.accepted = Some(self.method.accepted(shaders.device())?);
-        if !self.meshes.is_empty() {
-            let surface = &self.normal_height.surface;
-            let bytes = read_image(shaders.device(), surface)?;
-            let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
-            let (columns, rows) = (surface.width(), surface.height());
-            self.buried = placement::buried(&self.meshes, &texels, columns, rows, self.parameters.space_m);
-        }
+        let surface = &self.normal_height.surface;
+        let bytes = read_image(shaders.device(), surface)?;
+        let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
+        let (columns, rows) = (surface.width(), surface.height());
+        self.of_surface = placement::buried(&self.meshes, &texels, columns, rows, self.parameters.space_m);
+        self.of_surface.extend(warnings::gaping(&self.parameters, &self.given, self.variant, &texels));
         Ok(true)
     }
 
     fn warnings(&self) -> Vec<String> {
-        let mut warnings = [&self.view_warnings[..], &self.buried].concat();
+        let mut warnings = [&self.view_warnings[..], &self.of_surface].concat();
         warnings.extend(warnings::unheeded(&self.parameters, &self.given, self.variant));
         if self.lacks_geometry_stage {
             warnings.push(
@@ -386,7 +385,7 @@ impl Lava {
             view_warnings,
             meshes,
             accepted: None,
-            buried: Vec::new(),
+            of_surface: Vec::new(),
             points,
             lacks_geometry_stage,
             repeats: false,
