@@ -13,8 +13,8 @@ float lit_at(ivec2 pixel) {
         return before;
     }
     shadow_shift = min((int(hit.w) >> 3) & 31, map.top);
-    // A texel away from the surface itself.
-    float away_m = terrain.widest_spacing_m * exp2(float(shadow_shift)) + 1.0e-5 * hit.x;
+    // A texel away from the surface itself, and out of it where coarse triangles lie beneath it.
+    float away_m = terrain.widest_spacing_m * exp2(float(shadow_shift)) + (1.0e-5 + terrain.error_m) * hit.x;
     vec3 from = terrain.eye + hit.x * direction_of(vec2(pixel)) + away_m * terrain.to_sun;
     Hit none = Hit(NO_DEPTH, vec2(0.0), float(SKY));
     Hit found = trace(from, terrain.to_sun, NO_DEPTH, none);

@@ -45,6 +45,7 @@ layout(set = 0, binding = 0, std140) uniform Terrain {
     vec2 base_linear;
     float node_normals_below; // nodes that a pixel covers, below which normals are those between the nodes'
     int marks_tiles; // the tiles that are read are marked
+    float error_m; // metres towards the sun that lead out of the map from what is drawn in its place, for 1 m of depth
 } terrain;
 
 #include "terrain/kinds.glsl"

@@ -13,6 +13,9 @@ const MOST_DRAWS: u64 = 1 << 20;
 /// Invocations of fragment and compute shaders that a CPU finishes in a second, and any other device, roughly.
 const PER_SECOND: (f64, f64) = (1e8, 2e10);
 
+/// Time of a submission, by that rate: short for who waits for a frame of hours to be given up.
+const SUBMISSION_S: f64 = 1.0;
+
 /// Bytes on the device of a triangle that is drawn, at least: three indices, and half a vertex of position and normal.
 pub const DRAWN_BYTES: f64 = 24.0;
 
@@ -86,9 +89,14 @@ impl Estimate {
 }
 
 /// Invocations of shaders, or turns of their loops, that a device finishes in a second, roughly.
-pub fn per_second(device: &Device) -> f64 {
+fn per_second(device: &Device) -> f64 {
     let is_cpu = device.physical().device_type == DeviceType::Cpu;
     if is_cpu { PER_SECOND.0 } else { PER_SECOND.1 }
+}
+
+/// Work of one submission on a device, by that rough rate.
+pub fn submission_work(device: &Device) -> f64 {
+    SUBMISSION_S * per_second(device)
 }
 
 fn largest(items: &[(&'static str, f64)]) -> Option<(&'static str, f64)> {

@@ -22,20 +22,22 @@ pub(super) fn add(note: impl Into<String>) {
     NOTES.with_borrow_mut(|notes| notes.own.push(note.into()));
 }
 
+/// Says in a whole line what is passed over in what a parameter names.
+pub fn tell(line: String) {
+    NOTES.with_borrow_mut(|Notes { told, .. }| {
+        if !told.contains(&line) {
+            told.push(line);
+        }
+    });
+}
+
 /// Result of a reader of the file at `path`, and true where it has notes; they begin with the file's name.
 pub(super) fn of<T>(asset: Asset, path: &Path, read: impl FnOnce() -> T) -> (T, bool) {
     NOTES.with_borrow_mut(|notes| notes.own.clear());
     let result = read();
-    let has_any = NOTES.with_borrow_mut(|Notes { own, told }| {
-        let has_any = !own.is_empty();
-        for note in own.drain(..) {
-            let line = format!("{asset} {}: {note}", path.display());
-            if !told.contains(&line) {
-                told.push(line);
-            }
-        }
-        has_any
-    });
+    let own = NOTES.with_borrow_mut(|notes| std::mem::take(&mut notes.own));
+    let has_any = !own.is_empty();
+    own.into_iter().for_each(|note| tell(format!("{asset} {}: {note}", path.display())));
     (result, has_any)
 }
 

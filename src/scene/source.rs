@@ -1,5 +1,5 @@
 use crate::scene::loading::{Conditions, MeshOptions, timed};
-use crate::scene::{Error, Mesh, divided, formats, shapes};
+use crate::scene::{Error, Mesh, divided, formats, notes, shapes};
 use glam::{UVec2, Vec2};
 use std::convert::Infallible;
 use std::fmt;
@@ -94,7 +94,11 @@ impl MeshSource {
             }
             Self::Divided(source, triangles) => {
                 let whole = MeshOptions { is_optimised: false, ..*options };
-                divided(&source.load_under(&whole, conditions)?, *triangles)
+                let whole = source.load_under(&whole, conditions)?;
+                if whole.triangle_count() as u64 > *triangles {
+                    notes::tell(format!("{self}: it has {} triangles, and is not divided", whole.triangle_count()));
+                }
+                divided(&whole, *triangles)
             }
         };
         if options.is_optimised {

@@ -10,6 +10,7 @@ use super::parameters::{Parameters, TICKS_PER_S, Variant};
 use super::ping_pong::{self, Swapped, new, old};
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
+use crate::measure::estimate::submission_work;
 
 host_block! {
     /// The frame of a tick that is spread over several (3.7.2), as push constants.
@@ -18,6 +19,9 @@ host_block! {
         division: u32,
     }
 }
+
+/// Turns of loops for each triangle in the passes of a tick, roughly: 45 on a CPU of [`submission_work`]'s rate.
+const TICK_TURNS: f64 = 48.0;
 
 /// Pairs of sweeps of a tick in which wax sets, beside the one of every tick.
 const SETTING_PAIRS: usize = 3;
@@ -39,6 +43,10 @@ pub struct InternalDeformation {
     block_count: u32,
     /// Frames that a tick is spread over.
     time_division: u32,
+    /// Of a tick, in all of its passes.
+    tick_work: f64,
+    /// Of a submission.
+    most_work: f64,
 }
 
 impl InternalDeformation {
@@ -113,15 +121,19 @@ impl InternalDeformation {
             }
         }
         let (block_count, time_division) = (model.block_count(), parameters.time_division);
-        Ok(InternalDeformation { base_points, vertices, setting, block_count, time_division })
+        let tick_work = TICK_TURNS * f64::from(model.triangle_count());
+        let most_work = submission_work(shaders.device());
+        Ok(InternalDeformation { base_points, vertices, setting, block_count, time_division, tick_work, most_work })
     }
 
-    /// Records slice `slice` of a tick, `tick` ticks having been lit with it.
+    /// Records slice `slice` of a tick, `tick` ticks having been lit with it. Ticks beyond the work of a submission, as those before a
+    /// late picture of a large mesh, begin another one.
     ///
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: u64, slice: u32) -> Result<(), Error> {
         let newest = (tick % 2) as usize;
+        frame.reserve_work(&self.vertices[newest], self.tick_work / f64::from(self.time_division), self.most_work)?;
         if let Some(base_points) = &self.base_points
             && slice == 0
         {

@@ -241,8 +241,8 @@ impl Study for Setup {
         let scene = [
             Parameter::new("mesh", field!(Setup.meshes))
                 .help(
-                    "Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; its longest side is \
-                     scaled to 2 m, and it stands on the pool's floor",
+                    "Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file, `:N` divides it into N \
+                     triangles or more; its longest side is scaled to 2 m, and it stands on the pool's floor",
                 )
                 .default_text("teapot")
                 .cost(Cost::Buffers)

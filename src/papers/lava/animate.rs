@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::gpu_driven::SUBMISSION_S;
 use super::parameters::Parameters;
 use super::sph::Sph;
 use super::sph::parameters::Simulation;
@@ -15,7 +14,7 @@ use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Blend, Error, Frame, Image, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
-use crate::measure::estimate::per_second;
+use crate::measure::estimate::submission_work;
 
 host_block! {
     struct MotionConstants {
@@ -128,7 +127,7 @@ impl Animate {
             }
         };
         let inflow = Inflow::of(parameters, particles.positions.len() as u32);
-        let most_work = SUBMISSION_S * per_second(context.device());
+        let most_work = submission_work(context.device());
         Ok(Animate { motion, states, inflow, steps: 0, most_work })
     }
 

@@ -27,7 +27,7 @@ use crate::papers::lava::{
     Variant,
 };
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{HeightMapSource, Mesh, promised_triangles};
+use crate::scene::{HeightMapSource, Mesh, notes, promised_triangles};
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -113,7 +113,13 @@ impl Setup {
     fn load_bed(&self) -> Result<Bed, Error> {
         let Some(source) = &self.bed else { return Ok(Bed::level()) };
         let Parameters { space_m, particles, flow, .. } = &self.parameters;
-        let bed = Bed::of(&source.load()?, *space_m, flow.spacing_m(*particles));
+        let map = source.load()?;
+        let (voids, percent) = (map.voids(), 100.0 * map.void_fraction());
+        if voids > 0 {
+            let filled = "they are filled from their neighbours";
+            notes::tell(format!("`bed` {source}: {voids} samples, {percent:.1} %, are void: {filled}"));
+        }
+        let bed = Bed::of(&map, *space_m, flow.spacing_m(*particles));
         let lava_m = if flow.vent.effusion_m3_s > 0.0 { flow.vent.radius_m } else { flow.block_m.y };
         let (_, highest_m) = bed.highest();
         let needed_m = highest_m + f64::from(lava_m);

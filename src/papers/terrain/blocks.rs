@@ -101,6 +101,8 @@ host_block! {
         pub node_normals_below: f32,
         /// The tiles that are read are marked.
         pub marks_tiles: i32,
+        /// Metres towards the sun that lead out of the map from what is drawn in its place, for 1 m of depth.
+        pub error_m: f32,
     }
 }
 

@@ -49,18 +49,29 @@ fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
     projection * camera.view().as_dmat4()
 }
 
+/// Metres towards the sun that rise by the bound of the triangles' error, for 1 m of depth at a corner of the picture.
+fn out_of_the_map(rays: &Rays, parameters: &Parameters) -> f32 {
+    let error_m = f64::from(parameters.mesh_error_px) * rays.pixel_m() * rays.corner.length();
+    let sine = f64::from(parameters.sun.elevation_rad.sin());
+    (error_m / sine.max(LOWEST_SINE)) as f32
+}
+
 /// The pass, on the host.
 pub struct GeometricTransformation {
     info: Arc<PassInfo>,
     footprint: f32,
+    has_coarse_triangles: bool,
 }
 
+/// The sine of the sun's elevation below which rays from coarse triangles to it begin no farther away.
+const LOWEST_SINE: f64 = 0.1;
+
 impl GeometricTransformation {
-    /// Rays end at texels as large as `footprint` pixels.
-    pub fn new(footprint: f32) -> Self {
+    /// Rays end at texels as large as `footprint` pixels; triangles may be coarser than the map.
+    pub fn new(footprint: f32, has_coarse_triangles: bool) -> Self {
         let (reads, writes) = (["camera", "placement"], ["land", "light"]);
         let info = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &writes);
-        GeometricTransformation { info, footprint }
+        GeometricTransformation { info, footprint, has_coarse_triangles }
     }
 
     /// Writes the view's blocks where the device reads them as well, if it holds the maps.
@@ -76,7 +87,11 @@ impl GeometricTransformation {
     ) -> Result<SceneView, Error> {
         frame.host(&self.info, || {
             let mut view = SceneView::new(scene, parameters);
-            view.terrains.iter_mut().for_each(|terrain| terrain.pixel_nodes *= self.footprint);
+            let error_m = if self.has_coarse_triangles { out_of_the_map(&view.rays, parameters) } else { 0.0 };
+            for terrain in &mut view.terrains {
+                terrain.pixel_nodes *= self.footprint;
+                terrain.error_m = error_m;
+            }
             device_scene.map_or(Ok(()), |device_scene| device_scene.write(&view))?;
             Ok(view)
         })

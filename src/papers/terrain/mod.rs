@@ -240,7 +240,10 @@ impl Terrain {
             variant,
             given: Given::default(),
             scene,
-            geometric_transformation: GeometricTransformation::new(traversal.footprint(parameters.interpolation)),
+            geometric_transformation: GeometricTransformation::new(
+                traversal.footprint(parameters.interpolation),
+                variant == Variant::MeshLod,
+            ),
             device_scene,
             technique,
             objects: None,

@@ -1,7 +1,9 @@
 //! The state depends on the simulated time alone.
 
+use fumarole::gpu::{Mode, Recorder, Track};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::scene::MeshSource;
 
 use super::fire::{Fire, ball, quick};
 use crate::common::gpu_test;
@@ -84,8 +86,25 @@ fn a_frame_before_the_last_is_refused() {
     gpu_test(|device| {
         let mut fire = Fire::shell(device, &ball());
         fire.frame(3);
-        let mut recorder = fumarole::gpu::Recorder::new(device).unwrap();
-        let error = recorder.run(fumarole::gpu::Mode::Plain, |frame| fire.paper.record(frame, 2)).unwrap_err();
+        let mut recorder = Recorder::new(device).unwrap();
+        let error = recorder.run(Mode::Plain, |frame| fire.paper.record(frame, 2)).unwrap_err();
         assert!(error.to_string().contains("restart the paper first"), "{error}");
+    });
+}
+
+/// So that a late picture of a large mesh can be given up, and no submission lasts longer than a device may take.
+#[test]
+fn ticks_of_a_large_mesh_are_several_submissions() {
+    gpu_test(|device| {
+        let caught_up = |triangles: u64| {
+            let mesh = MeshSource::Sphere.divided(triangles).load().unwrap();
+            let mut fire = Fire::new(device, Variant::Shell, &Parameters { fire: 0, smoke: 0, ..quick() }, &mesh);
+            let mut recorder = Recorder::new(device).unwrap();
+            let sample = recorder.run(Mode::Plain, |frame| fire.paper.advance(frame, 100, 100).map(drop)).unwrap();
+            sample.spans.iter().filter(|span| span.track == Track::Wait).count()
+        };
+        assert_eq!(caught_up(0), 1);
+        let parts = caught_up(40_000);
+        assert!((2..=4).contains(&parts), "{parts}");
     });
 }

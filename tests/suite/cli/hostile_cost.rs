@@ -423,7 +423,7 @@ fn a_long_record_is_compared_within_seconds() {
     let out = folder();
     let example = include_str!("../../data/record.json");
     let samples: Vec<String> =
-        (0..3_000_000).map(|i| format!("{}", 1.0 + f64::from(i * 7_919 % 1_000) / 1e5)).collect();
+        (0..3_000_000).map(|i| format!("{}", 1.0 + f64::from(i % 1_000 * 7_919 % 1_000) / 1e5)).collect();
     let joined = samples.join(",");
     let write = |name: &str, first: &str| {
         let text = example.replacen("\"samples\": [", &format!("\"samples\": [{first}, {joined}, "), 1);

@@ -54,7 +54,8 @@ fn the_readme_lists_the_passes_of_each_variant() {
     let (_, table) = page.split_once("## Papers, passes, shaders").unwrap();
     let (table, _) = table.split_once("## The window").unwrap();
     // Of each paper the variants in a row, with their passes; others say in words how they differ from a row above.
-    let mut rows: Vec<(&str, Vec<(&str, Vec<&str>)>)> = Vec::new();
+    type Passes<'a> = (&'a str, Vec<&'a str>);
+    let mut rows: Vec<(&str, Vec<Passes<'_>>)> = Vec::new();
     for row in table.lines().filter(|line| line.starts_with("| ")) {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
         if let Some(&paper) = quoted(cells[1]).first() {

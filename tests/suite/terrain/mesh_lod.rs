@@ -7,7 +7,7 @@ use fumarole::gpu::{Compiler, Device};
 use fumarole::papers::terrain::reference::{Part, Ray, Square};
 use fumarole::papers::terrain::{
     Base, Bound, Cover, Ground, Inputs, Interpolation, Levels, Origin, PATCH_SIDE, Parameters, Patch, Quadtree, Rays,
-    Selection, Variant, Viewer,
+    Selection, Sun, Variant, Viewer,
 };
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, HeightMap};
@@ -326,6 +326,40 @@ fn silhouettes_are_within_the_bound_of_brute_force() {
                     found.assert_near(&name, &expected, (reach, reach as u32 + 1));
                 }
             }
+        }
+    });
+}
+
+/// Coarse triangles lie beneath the map in places: land that is lit is not in its own shadow there.
+#[test]
+fn coarse_triangles_throw_no_specks_of_shadow() {
+    gpu_test(|device| {
+        let mut random = Random::new(95);
+        for base in BASES {
+            let map = ridges(&mut random, (300, 221), 1500.0);
+            let world = World::alone("ridges", base, Interpolation::Bilinear, None, map);
+            let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
+            let camera = world.camera(Stand::Above, &mut random);
+            let sun = Sun { azimuth_rad: 2.0, elevation_rad: 0.6 };
+            let parameters = Parameters { mesh_error_px: 4.0, shadows: true, sun, ..world.parameters(camera, SIZE) };
+            let dark = |variant| -> Vec<bool> {
+                let drawn = Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs).draw();
+                drawn.sunlit.iter().map(|lit| *lit < 0.5).collect()
+            };
+            let [all, chosen] = [Variant::Mesh, Variant::MeshLod].map(dark);
+            let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
+            let is_near = |at: usize| {
+                let (x, y) = (at % width, at / width);
+                (y.saturating_sub(6)..(y + 7).min(height))
+                    .any(|y| (x.saturating_sub(6)..(x + 7).min(width)).any(|x| all[y * width + x]))
+            };
+            let specks = (0..all.len()).filter(|&at| chosen[at] && !is_near(at)).count();
+            assert!(
+                specks <= 2,
+                "{base:?}: {specks} specks, {} pixels in shadow",
+                all.iter().filter(|dark| **dark).count()
+            );
+            assert!(all.iter().any(|dark| *dark), "{base:?}");
         }
     });
 }

@@ -29,7 +29,7 @@ pub(super) fn noise(at: DVec2) -> f64 {
     let cell = at.floor();
     let fade = [at.x - cell.x, at.y - cell.y].map(|t| smoothstep(0.0, 1.0, t));
     let corner = |step: IVec2| {
-        let at = cell.as_ivec2() + step;
+        let at = cell.as_ivec2().wrapping_add(step);
         let mut h = (at.x as u32).wrapping_mul(0x8da6_b343) ^ (at.y as u32).wrapping_mul(0xd816_3841);
         h = (h ^ (h >> 15)).wrapping_mul(0x846c_a68b);
         f64::from((h ^ (h >> 16)) & 0xffff) / 65535.0

@@ -31,13 +31,10 @@ use super::extract::Accepted;
 use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::read_image;
 use crate::gpu::{Device, Error, Frame, Image, ImageDesc, ImageView};
-use crate::measure::estimate::per_second;
+use crate::measure::estimate::submission_work;
 
 pub use self::cells::Cells;
 pub use self::estimate::estimate;
-
-/// Time of a submission, by a rough rate: short for who waits for a frame of hours to be given up.
-pub const SUBMISSION_S: f64 = 1.0;
 
 /// Stages one and two behind `animate`.
 pub struct GpuDriven {
@@ -66,7 +63,7 @@ impl GpuDriven {
         let sums = context.stored("accumulated-depths")?;
         let extract = Extract::new(context, &density.density, &columns, &sums)?;
         let accumulate_depths = AccumulateDepths::new(context, &columns, &sums)?;
-        let most_work = SUBMISSION_S * per_second(context.device());
+        let most_work = submission_work(context.device());
         Ok(GpuDriven { sort, density, extract, accumulate_depths, columns, sums, most_work })
     }
 

@@ -51,6 +51,10 @@ impl Header {
     pub fn read(stream: &mut Stream<'_>) -> Result<Self, Stop> {
         let mut bytes = Vec::new();
         while !has_end(&bytes) && bytes.len() < LONGEST_BYTES && stream.append(&mut bytes, STEP_BYTES)? > 0 {}
+        if !(bytes.starts_with(b"ply") && bytes.get(3).is_some_and(u8::is_ascii_whitespace)) {
+            let reason = "its first line is not `ply`; it is something else, or damaged";
+            return Err(Fault::new(Place::Line(1), reason).into());
+        }
         let mut reader = Reader::new(&bytes[..]);
         let parsed = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| fault(&error))?;
         let payload = reader.get_ref().to_vec();

@@ -1,6 +1,7 @@
 use super::geotiff_check::check_samples;
 use super::placement::{MapCoordinates, Unit, by_world_file};
 use super::stored::Stored;
+use super::systems::{HEIGHTS_IN_FEET, NOT_IN_METRES, WEB_MERCATOR, foot_m};
 use super::{check_compressed, check_unit};
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
@@ -21,6 +22,7 @@ pub(super) const MAX_BYTES: usize = 8 << 28;
 const MAX_TAG_BYTES: usize = 16 << 20;
 const GDAL_METADATA: Tag = Tag::Unknown(42_112);
 const GEO_DOUBLE_PARAMETERS: Tag = Tag::Unknown(34_736);
+const GEO_ASCII_PARAMETERS: Tag = Tag::Unknown(34_737);
 
 /// A picture of a TIFF or BigTIFF, with what the tags of GeoTIFF and GDAL say of it.
 pub(super) struct Picture<R: Read + Seek> {
@@ -226,7 +228,10 @@ impl<R: Read + Seek> Tags<'_, R> {
         };
         if !(step.is_finite() && step.min_element() > 0.0) {
             let [x, y] = step.to_array().map(shown);
-            return Err(fault(field, format!("it makes steps of {x} and {y}; both have to be positive")));
+            let reason = format!(
+                "it makes steps of {x} and {y}; both have to be positive, which gdalwarp makes them: it writes north up"
+            );
+            return Err(fault(field, reason));
         }
         let north_west = corner.map(|corner| corner + DVec2::new(step.x, -step.y) * offset);
         Ok(Some(MapCoordinates { north_west, step, width, height, field }))
@@ -243,10 +248,15 @@ impl<R: Read + Seek> Tags<'_, R> {
             let entry = directory.chunks_exact(4).skip(1).find(|entry| entry[0] == key && entry[1] == 0);
             entry.map(|entry| entry[3])
         };
+        let system = short(3_072).unwrap_or_default();
         let unit = match (short(1_024), short(3_076), short(2_054)) {
             (Some(1), Some(9_002), _) => Some(Unit::Metres(0.3048)),
             (Some(1), Some(9_003), _) => Some(Unit::Metres(1_200.0 / 3_937.0)),
-            (Some(1), None | Some(9_001), _) => Some(Unit::Metres(1.0)),
+            (Some(1), unit, _) if WEB_MERCATOR.contains(&system) && matches!(unit, None | Some(9_001)) => {
+                Some(Unit::WebMercator)
+            }
+            (Some(1), Some(9_001), _) => Some(Unit::Metres(1.0)),
+            (Some(1), None, _) => Some(Unit::Metres(self.unit_by_name(system)?)),
             (Some(1), Some(32_767), _) => {
                 let entry = directory.chunks_exact(4).skip(1).find(|entry| entry[0] == 3_077 && entry[1] == 34_736);
                 let sizes = self.numbers(GEO_DOUBLE_PARAMETERS, "GeoDoubleParams", 1)?.unwrap_or_default();
@@ -262,13 +272,40 @@ impl<R: Read + Seek> Tags<'_, R> {
             }
             _ => None,
         };
+        let name = self.names();
+        let (_, name_of_heights) = name.split_once(" + ").unwrap_or_default();
+        let is_in_feet = short(4_096).is_some_and(|system| HEIGHTS_IN_FEET.contains(&system));
         match short(4_099) {
-            None | Some(0 | 9_001 | 32_767) => Ok(Keys { raster_type: short(1_025), unit }),
             Some(9_002 | 9_003) => Err(fault("VerticalUnits", check_unit("feet").err().unwrap_or_default())),
+            None if is_in_feet || foot_m(name_of_heights).is_some() => {
+                Err(fault("VerticalCSType", check_unit("feet").err().unwrap_or_default()))
+            }
+            None | Some(0 | 9_001 | 32_767) => Ok(Keys { raster_type: short(1_025), unit }),
             Some(other) => {
                 Err(fault("VerticalUnits", format!("the unit {other} of heights is not known; use metres (9001)")))
             }
         }
+    }
+
+    /// Metres of the unit of a projected system of EPSG by its name and number: of one with a system of heights, GDAL writes no
+    /// other unit.
+    fn unit_by_name(&mut self, system: u16) -> Result<f64, Fault> {
+        let name = self.names();
+        if let Some(foot_m) = foot_m(name.split(" + ").next().unwrap_or_default()) {
+            return Ok(foot_m);
+        }
+        if NOT_IN_METRES.iter().any(|systems| systems.contains(&system)) {
+            let reason = format!(
+                "EPSG:{system} is not in metres, and the file names no unit; write one in metres with gdalwarp"
+            );
+            return Err(fault("ProjectedCSType", reason));
+        }
+        Ok(1.0)
+    }
+
+    /// Names of its systems; without any where they are no text, since they are not needed to read it.
+    fn names(&mut self) -> String {
+        self.text(GEO_ASCII_PARAMETERS, "GeoAsciiParams").ok().flatten().unwrap_or_default()
     }
 
     fn text(&mut self, tag: Tag, name: &str) -> Result<Option<String>, Fault> {

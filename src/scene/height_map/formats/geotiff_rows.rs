@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tiff::decoder::{ChunkType, DecodingResult};
 
 use super::geotiff::{MAX_BYTES, Picture, fault, foreign};
-use super::{malformed, open_tiff, tiff};
+use super::{auxiliary, malformed, open_tiff, tiff};
 use crate::scene::Error;
 use crate::scene::binary::spare_bytes;
 use crate::scene::error::Fault;
@@ -113,6 +113,7 @@ impl GeoTiffRows {
 
 fn open(path: &Path, options: MapOptions) -> Result<Option<Picture<BufReader<File>>>, Error> {
     let Some(opened) = open_tiff(path)? else { return Ok(None) };
+    auxiliary::check(path)?;
     tiff(path, opened, options).map(Some)
 }
 

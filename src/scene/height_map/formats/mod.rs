@@ -2,6 +2,7 @@
 //! allocates; it gives a valid map or names the field that is wrong.
 
 mod ascii_grid;
+mod auxiliary;
 mod distinct;
 mod esri;
 mod first_look;
@@ -13,6 +14,7 @@ mod hgt_folder;
 mod placement;
 mod png;
 mod stored;
+mod systems;
 pub(in crate::scene) mod vrt;
 
 pub(super) use self::geotiff_rows::GeoTiffRows;
@@ -61,6 +63,7 @@ impl Format {
 pub(super) fn load(path: &Path, options: impl Into<MapOptions>) -> Result<HeightMap, Error> {
     let options = options.into();
     let MapOptions { overview, has_own_spacing, .. } = options;
+    auxiliary::check(path)?;
     if overview > 0 {
         return tiff_overview(path, options);
     }

@@ -1,7 +1,7 @@
 //! Spacing of the samples of a raster with map coordinates.
 
-use super::read_text;
-use crate::scene::error::{Asset, Fault};
+use super::{check_unit, read_text};
+use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::Placement;
 use crate::scene::height_map::{Coordinates, Geographic, MapOptions};
 use crate::scene::{Error, file, world_file};
@@ -14,6 +14,8 @@ pub(super) enum Unit {
     Degrees,
     /// So many metres.
     Metres(f64),
+    /// Metres at the equator, of which those of the ground are a part everywhere else.
+    WebMercator,
 }
 
 /// Steps of this size or more are taken for metres where nothing names the unit.
@@ -64,6 +66,7 @@ impl MapCoordinates {
                 let coordinates = self.north_west.map(|north_west| Coordinates { north_west, step: self.step });
                 Placement::Metres(self.step * metres, coordinates)
             }
+            (Unit::WebMercator, _) => return Err(self.stretched()),
             (Unit::Degrees, Some(corner)) => {
                 Placement::Degrees(Geographic { west_deg: corner.x, north_deg: corner.y, step_deg: self.step })
             }
@@ -71,6 +74,26 @@ impl MapCoordinates {
             (Unit::Degrees, None) => return Ok(Placement::Unknown),
         };
         placement.check(self.height, self.field).map(|()| placement)
+    }
+
+    /// Web Mercator: heights would stand on land that is too wide for them.
+    fn stretched(&self) -> Fault {
+        /// Of its sphere, metres.
+        const RADIUS_M: f64 = 6_378_137.0;
+        let middle_m = self.north_west.map(|first| first.y - self.step.y * (f64::from(self.height) - 1.0) / 2.0);
+        let remedy = "write metres of the ground with gdalwarp -t_srs and a system for its place";
+        let reason = match middle_m.filter(|middle_m| middle_m.is_finite()) {
+            Some(middle_m) => {
+                let cosine = 1.0 / (middle_m / RADIUS_M).cosh();
+                let spacing_m = cosine * self.step.max_element();
+                format!(
+                    "a metre of Web Mercator is {cosine:.3} m of the ground at its middle; {remedy}, or give `spacing` \
+                     {spacing_m:.6}, which holds there"
+                )
+            }
+            None => format!("a metre of Web Mercator is less than one of the ground; {remedy}, or give `spacing`"),
+        };
+        Fault::new(Place::Part(self.field.to_owned()), reason)
     }
 
     /// As [`Self::placed`]; where samples have a spacing of the user's, steps that no map may have tell nothing.
@@ -122,10 +145,34 @@ pub(super) fn beside(raster: &Path) -> Result<Option<Unit>, Error> {
     for ending in ["prj", "PRJ"] {
         if let Some(path) = file::beside(raster, ending)? {
             let (file, _) = file::open(&path, Asset::HeightMap)?;
-            return Ok(unit(&read_text(file, &path)?));
+            let projection = read_text(file, &path)?;
+            return match check_heights(&projection) {
+                Ok(()) => Ok(unit(&projection)),
+                Err(reason) => {
+                    let fault = Fault::new(Place::Whole, reason);
+                    Err(Error::Malformed { path, asset: Asset::HeightMap, fault })
+                }
+            };
         }
     }
     Ok(None)
+}
+
+/// Where a projection's text turns to the system of heights.
+const OF_HEIGHTS: [&str; 3] = ["VERT_CS[", "VERTCS[", "VERTCRS["];
+
+/// Passes for heights in metres, and for a projection that says nothing of heights.
+pub(super) fn check_heights(projection: &str) -> Result<(), String> {
+    let upper = projection.to_uppercase();
+    let Some(at) = OF_HEIGHTS.iter().filter_map(|word| upper.find(word)).min() else { return Ok(()) };
+    // Behind it, the unit of its axis: UNIT["name",metres], or LENGTHUNIT.
+    let unit = upper[at..].split("UNIT[").nth(1).unwrap_or_default();
+    let mut parts = unit.split([',', ']']);
+    let name = parts.next().unwrap_or_default().trim().trim_matches('"').to_lowercase();
+    match parts.next().and_then(|metres| metres.trim().parse::<f64>().ok()) {
+        Some(metres) if metres != 1.0 => check_unit(&name),
+        _ => Ok(()),
+    }
 }
 
 /// The unit in a projection's text: well-known text, or the older lines of keywords that GTOPO30 ships.
@@ -133,8 +180,14 @@ pub(super) fn unit(projection: &str) -> Option<Unit> {
     let upper = projection.to_uppercase();
     if upper.contains("PROJCS") || upper.contains("PROJCRS") {
         // Heights may have a system of their own behind it.
-        let end = ["VERT_CS[", "VERTCS[", "VERTCRS["].iter().filter_map(|word| upper.find(word)).min();
+        let end = OF_HEIGHTS.iter().filter_map(|word| upper.find(word)).min();
         let projected = &upper[..end.unwrap_or(upper.len())];
+        if ["PSEUDO-MERCATOR", "MERCATOR_AUXILIARY_SPHERE", "PSEUDO MERCATOR"]
+            .iter()
+            .any(|name| projected.contains(name))
+        {
+            return Some(Unit::WebMercator);
+        }
         // The last unit is that of the projected coordinates: UNIT["name",metres].
         let unit = projected.rsplit("UNIT[").next().and_then(|tail| tail.split(',').nth(1));
         let digits = |text: &str| text.trim().trim_end_matches([']', ' ']).parse::<f64>().ok();
@@ -172,6 +225,43 @@ mod tests {
         assert_eq!(unit(&vertical), Some(Unit::Metres(0.3048)));
         assert_eq!(unit("Projection UTM\nUnits METERS\n"), Some(Unit::Metres(1.0)));
         assert_eq!(unit("nothing"), None);
+    }
+
+    #[test]
+    fn web_mercator_has_a_unit_of_its_own() {
+        for name in [
+            "WGS_1984_Web_Mercator_Auxiliary_Sphere\",PROJECTION[\"Mercator_Auxiliary_Sphere",
+            "WGS 84 / Pseudo-Mercator",
+        ] {
+            assert_eq!(unit(&format!("PROJCS[\"{name}\",UNIT[\"Meter\",1.0]]")), Some(Unit::WebMercator), "{name}");
+        }
+        let grid = |north_west| MapCoordinates {
+            north_west,
+            step: DVec2::splat(200.0),
+            width: 3,
+            height: 3,
+            field: "cellsize",
+        };
+        let message = grid(Some(DVec2::new(0.0, 200.0))).placed(Some(Unit::WebMercator)).unwrap_err().to_string();
+        assert!(message.contains("is 1.000 m") && message.contains("`spacing` 200.000000"), "{message}");
+        assert!(grid(None).placed(Some(Unit::WebMercator)).is_err());
+        let own = grid(None).placed_or_spaced(Some(Unit::WebMercator), true);
+        assert_eq!(own, Ok(Placement::Unknown));
+    }
+
+    #[test]
+    fn heights_in_feet_are_refused_by_their_projection() {
+        let compound = |unit: &str| {
+            check_heights(&format!(
+                "COMPD_CS[\"x\",PROJCS[\"y\",UNIT[\"Foot\",0.3048]],VERT_CS[\"z\",VERT_DATUM[\"d\",2005],{unit}]]"
+            ))
+        };
+        assert_eq!(compound("UNIT[\"metre\",1.0,AUTHORITY[\"EPSG\",\"9001\"]]"), Ok(()));
+        assert_eq!(compound("AXIS[\"Up\",UP]"), Ok(()));
+        for unit in ["UNIT[\"Foot_US\",0.3048006096012192]", "LENGTHUNIT[\"foot\",0.3048]"] {
+            assert!(compound(unit).unwrap_err().contains("its heights are in \"foot"), "{unit}");
+        }
+        assert_eq!(check_heights("PROJCS[\"y\",UNIT[\"Foot\",0.3048]]"), Ok(()));
     }
 
     #[test]

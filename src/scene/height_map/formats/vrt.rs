@@ -88,7 +88,11 @@ impl Mosaic {
         check_size(width, height).map_err(|reason| fault(root, reason))?;
         let size = (width as u32, height as u32);
         let coordinates = child(root, "GeoTransform").map(coordinates_of).transpose()?;
-        let unit = child(root, "SRS").and_then(|node| placement::unit(self::text(node)));
+        let system = child(root, "SRS");
+        if let Some(node) = system {
+            placement::check_heights(self::text(node)).map_err(|reason| fault(node, reason))?;
+        }
+        let unit = system.and_then(|node| placement::unit(self::text(node)));
         if let Some(node) = child(root, "MaskBand") {
             return Err(fault(
                 node,
