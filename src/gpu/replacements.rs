@@ -12,7 +12,9 @@ use crate::shader_build::{self, CompiledShader, EMBEDDED, EmbeddedShader, Stage}
 
 /// Shaders of a folder, compiled.
 pub struct Replacements {
+    /// All of the folder, sorted by name.
     pub(super) shaders: Vec<CompiledShader>,
+    /// Path of the folder; empty without one.
     pub(super) folder: String,
 }
 

@@ -111,8 +111,8 @@ impl Setup {
         [
             Parameter::new("mesh", field!(Setup.mesh))
                 .help(
-                    "Object that burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file, `:N` \
-                     divides it into N triangles or more; scaled to a diagonal of 1, its base centred at the origin",
+                    "Object that burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file, with :N \
+                     divided into N triangles or more; scaled to a diagonal of 1, its base centred at the origin",
                 )
                 .cost(Cost::Buffers)
                 .everyday(),

@@ -241,7 +241,7 @@ impl Study for Setup {
         let scene = [
             Parameter::new("mesh", field!(Setup.meshes))
                 .help(
-                    "Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file, `:N` divides it into N \
+                    "Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file, with :N divided into N \
                      triangles or more; its longest side is scaled to 2 m, and it stands on the pool's floor",
                 )
                 .default_text("teapot")

@@ -402,7 +402,7 @@ mod tests {
         let fault = parse(list.as_bytes()).unwrap_err().to_string();
         assert_eq!(fault, "property x of its vertices has a type that cannot be used");
         let fault = parse(b"plx\n").unwrap_err().to_string();
-        assert_eq!(fault, "line 1: Expected magic number 'ply'");
+        assert_eq!(fault, "line 1: its first line is not `ply`; it is something else, or damaged");
     }
 
     #[test]

@@ -158,7 +158,7 @@ pub(super) fn beside(raster: &Path) -> Result<Option<Unit>, Error> {
     Ok(None)
 }
 
-/// Where a projection's text turns to the system of heights.
+/// Words at which a projection's text turns to the system of heights.
 const OF_HEIGHTS: [&str; 3] = ["VERT_CS[", "VERTCS[", "VERTCRS["];
 
 /// Passes for heights in metres, and for a projection that says nothing of heights.

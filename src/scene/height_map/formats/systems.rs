@@ -93,7 +93,7 @@ mod tests {
             projected(&[(3_072, system), (4_096, heights)], names).map(|map| map.spacing_m().x)
         };
         assert_eq!(spacing_m(2_056, 5_703, "CH1903+ / LV95 + NAVD88 height|"), Ok(100.0));
-        let us_foot_m = 100.0 * 1_200.0 / 3_937.0;
+        let us_foot_m = 100.0 * (1_200.0 / 3_937.0);
         assert_eq!(spacing_m(2_225, 5_703, "NAD83 / California zone 1 (ftUS) + NAVD88 height|"), Ok(us_foot_m));
         assert_eq!(spacing_m(2_222, 5_703, "NAD83 / Arizona East (ft) + NAVD88 height|"), Ok(100.0 * 0.3048));
         let refused = |system, heights, names| spacing_m(system, heights, names).unwrap_err().to_string();
@@ -117,8 +117,8 @@ mod tests {
         for keys in [&[(3_072, 3_857)][..], &[(3_072, 3_857), (3_076, 9_001)], &[(3_072, 3_785)]] {
             let message = projected(keys, "WGS 84 / Pseudo-Mercator|").unwrap_err().to_string();
             // 46.6 degrees north.
-            assert!(message.contains("a metre of Web Mercator is 0.687 m of the ground"), "{message}");
-            assert!(message.contains("gdalwarp") && message.contains("`spacing` 68.7"), "{message}");
+            assert!(message.contains("a metre of Web Mercator is 0.688 m of the ground"), "{message}");
+            assert!(message.contains("gdalwarp") && message.contains("`spacing` 68.76"), "{message}");
         }
     }
 }
