@@ -335,6 +335,7 @@ fn silhouettes_are_within_the_bound_of_brute_force() {
 fn coarse_triangles_throw_no_specks_of_shadow() {
     gpu_test(|device| {
         let mut random = Random::new(95);
+        let mut in_shadow = 0;
         for base in BASES {
             let map = ridges(&mut random, (300, 221), 1500.0);
             let world = World::alone("ridges", base, Interpolation::Bilinear, None, map);
@@ -354,13 +355,10 @@ fn coarse_triangles_throw_no_specks_of_shadow() {
                     .any(|y| (x.saturating_sub(6)..(x + 7).min(width)).any(|x| all[y * width + x]))
             };
             let specks = (0..all.len()).filter(|&at| chosen[at] && !is_near(at)).count();
-            assert!(
-                specks <= 2,
-                "{base:?}: {specks} specks, {} pixels in shadow",
-                all.iter().filter(|dark| **dark).count()
-            );
-            assert!(all.iter().any(|dark| *dark), "{base:?}");
+            assert!(specks <= 2, "{base:?}: {specks} specks");
+            in_shadow += all.iter().filter(|dark| **dark).count();
         }
+        assert!(in_shadow > 100, "{in_shadow} pixels");
     });
 }
 
