@@ -26,6 +26,10 @@ use crate::cli::program::{Ended, Running, device, fumarole};
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Between two looks, and between two events of one hand.
 pub const LOOK: Duration = Duration::from_millis(20);
+/// Without a frame the window is at rest.
+const QUIET: Duration = Duration::from_millis(100);
+/// In which a window draws what comes of the mouse, on a busy machine.
+const ANSWER: Duration = Duration::from_secs(2);
 
 /// X events of the test extension.
 const KEY_PRESS: u8 = 2;
@@ -372,25 +376,32 @@ impl<'a> Window<'a> {
         self.display.button(1);
     }
 
-    /// Waits until it has drawn a frame, and so has seen what was done before.
-    fn wait_for_drawing(&mut self) {
+    /// Does something with the mouse while it draws nothing, and waits until it has drawn what came of it. A frame that is drawn
+    /// between what is done and the first look would else be waited for in vain; where nothing comes of it none is drawn.
+    fn see(&self, done: impl FnOnce(&Display)) {
         // The file is made anew with each frame.
-        let drawn = |window: &Self| fs::metadata(&window.controls).map(|file| (file.ino(), file.mtime_nsec())).ok();
-        let before = drawn(self);
-        self.wait("a frame of the window", |window| (drawn(window) != before).then_some(()));
+        let drawn = || fs::metadata(&self.controls).map(|file| (file.ino(), file.mtime(), file.mtime_nsec())).ok();
+        let before = wait("a window at rest", || {
+            let before = drawn();
+            thread::sleep(QUIET);
+            (drawn() == before).then_some(before)
+        });
+        done(self.display);
+        let deadline = Instant::now() + ANSWER;
+        while drawn() == before && Instant::now() < deadline {
+            thread::sleep(LOOK);
+        }
     }
 
     /// Drags with a button held, step by step as a hand does.
     pub fn drag(&mut self, button: u8, from: (i16, i16), to: (i16, i16)) {
-        self.display.point(from);
-        self.display.input(BUTTON_PRESS, button, (0, 0));
-        self.wait_for_drawing();
+        self.see(|display| display.point(from));
+        self.see(|display| display.input(BUTTON_PRESS, button, (0, 0)));
         for step in 1..=4 {
             let part = |a: i16, b: i16| a + (b - a) * step / 4;
-            self.display.point((part(from.0, to.0), part(from.1, to.1)));
-            self.wait_for_drawing();
+            self.see(|display| display.point((part(from.0, to.0), part(from.1, to.1))));
         }
-        self.display.input(BUTTON_PRESS + 1, button, (0, 0));
+        self.see(|display| display.input(BUTTON_PRESS + 1, button, (0, 0)));
     }
 
     /// True when the middle of the window shows the picture or the target of that name.
