@@ -74,34 +74,6 @@ fn table_1_is_written_with_the_ratios_beside_the_paper_s() {
     assert_eq!(rows, expected.map(|(row, minutes)| (row.to_owned(), minutes)));
 }
 
-/// Larger tables and more steps are nearer to what they are compared with; turbulence has a share of the time.
-#[test]
-fn sweeps_and_the_share_of_turbulence_are_written() {
-    let out = folder();
-    let run = |words: &str| {
-        let experiment = gas(&format!("experiment {words} --size 90x62 --quiet --out .")).args(ONCE);
-        experiment.on_test_device().inside(out.path()).run().succeeded();
-    };
-    let rows = |name: &str| read_json(&out.path().join(format!("gas-{name}.json")))["table"].clone();
-    let differences = |name: &str| -> Vec<(u64, f64)> {
-        let table = rows(name);
-        let of = |row: &serde_json::Value| (row["count"].as_u64().unwrap(), row["Luv mean"].as_f64().unwrap());
-        table["rows"].as_array().unwrap().iter().map(of).collect()
-    };
-    run("table-size --steps 20 --counts 4,24");
-    let by_size = differences("table-size");
-    assert!(by_size[0].0 == 4 && by_size[1].0 == 24 && by_size[1].1 < 0.7 * by_size[0].1, "{by_size:?}");
-    run("steps --counts 4,16,64");
-    let by_steps = differences("steps");
-    assert!(by_steps[1].1 < by_steps[0].1 && by_steps[2] == (64, 0.0) && by_steps[1].1 > 0.0, "{by_steps:?}");
-    run("noise --steps 20");
-    // Of times, so short ones on a busy machine may even be the other way round.
-    let row = rows("noise")["rows"][0].clone();
-    let [turbulent, constant, share] = ["turbulent ms", "constant ms", "share"].map(|name| row[name].as_f64().unwrap());
-    assert!(turbulent > 0.0 && constant > 0.0, "{row}");
-    assert!((share - (turbulent - constant) / turbulent).abs() < 1e-9, "{row}");
-}
-
 /// Every variant stands beside the paths, which have two pictures of their own and more light than what is scattered once.
 #[test]
 fn the_reference_is_set_beside_every_variant() {

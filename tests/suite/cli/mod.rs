@@ -18,6 +18,7 @@ pub mod dumps;
 mod experiment;
 mod experiment_tables;
 mod gas;
+mod gas_experiments;
 mod gas_volumes;
 mod help;
 mod hostile;

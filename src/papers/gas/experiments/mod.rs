@@ -7,7 +7,7 @@ mod savings;
 mod tables;
 mod trade;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use self::tables::{TABLE_1, TABLE_2};
 use self::trade::{STEPS, TABLE_SIZE};
@@ -168,6 +168,11 @@ fn gpu_ms(row: &Row, names: &[&str]) -> f64 {
     passes.filter_map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).sum()
 }
 
+/// Evaluations of the density along the viewer's rays in the last frame; null of several bands.
+fn samples(row: &Row) -> Value {
+    row.run.results.get("samples").cloned().unwrap_or_default()
+}
+
 /// The volume's time with the scene's density function, and with a constant one: the difference is turbulence.
 fn noise(context: &mut Context<'_>) -> Result<(), Error> {
     let turbulent = context.setup.named();
@@ -175,16 +180,23 @@ fn noise(context: &mut Context<'_>) -> Result<(), Error> {
     let points = [("turbulent", turbulent), ("constant", constant)]
         .map(|(label, setup)| point(label, 0.0, setup, Variant::None));
     let (machine, swept) = context.sweep_loaded(&points)?;
-    let volume_ms = |label: &str| {
-        let row = swept.rows.iter().find(|row| row.label == label)?;
-        row.run.passes.iter().find(|p| p.name == "volume")?.gpu_ms.as_ref().map(|s| s.median)
-    };
-    let (turbulent, constant) = (volume_ms("turbulent"), volume_ms("constant"));
+    let row = |label: &str| swept.rows.iter().find(|row| row.label == label);
+    let volume_ms = |row: &Row| row.run.passes.iter().find(|p| p.name == "volume")?.gpu_ms.as_ref().map(|s| s.median);
+    let rows = ["turbulent", "constant"].map(row);
+    let [turbulent, constant] = rows.map(|row| row.and_then(volume_ms));
+    let [turbulent_samples, constant_samples] = rows.map(|row| row.map(samples));
     let fraction = turbulent.zip(constant).map(|(t, c)| (t - c) / t);
     let table = ResultTable {
         title: "The share of turbulence in the volume's time",
-        columns: &["turbulent ms", "constant ms", "share", "paper"],
-        rows: vec![vec![json!(turbulent), json!(constant), json!(fraction), json!(0.65)]],
+        columns: &["turbulent ms", "constant ms", "share", "paper", "turbulent samples", "constant samples"],
+        rows: vec![vec![
+            json!(turbulent),
+            json!(constant),
+            json!(fraction),
+            json!(0.65),
+            json!(turbulent_samples),
+            json!(constant_samples),
+        ]],
     };
     context.keep_warnings(swept.rows);
     context.publish_table(&machine, &table)?;

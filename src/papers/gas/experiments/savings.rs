@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::trade::{draw, gas_mask};
-use super::{Context, gpu_ms, point};
+use super::{Context, gpu_ms, point, samples};
 use crate::image::compare;
 use crate::measure::Error;
 use crate::measure::machine::Machine;
@@ -132,7 +132,7 @@ fn compared(
             json!(row.run.median_frame_ms()),
             json!(ms),
             json!(Some(ms / all_ms).filter(|ratio| ratio.is_finite())),
-            row.run.results.get("samples").cloned().unwrap_or_default(),
+            samples(row),
             json!(difference.mean),
             json!(difference.p99),
         ]);

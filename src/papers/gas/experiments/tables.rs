@@ -1,6 +1,6 @@
 //! The paper's tables 1 and 2, ours beside the paper's.
 
-use super::Context;
+use super::{Context, samples};
 use crate::measure::compare::{Ratio, ratio_within_process};
 use crate::measure::sweep::{Point, Row};
 use crate::measure::{Error, Variant as _};
@@ -152,6 +152,7 @@ impl PaperTable {
             ("paper min", Align::Right),
             ("paper ratio", Align::Right),
             ("ours / paper", Align::Right),
+            ("samples", Align::Right),
         ]);
         for compared in rows {
             let Row { label, run, .. } = &compared.row;
@@ -165,6 +166,7 @@ impl PaperTable {
                 number(compared.minutes, 0),
                 number(compared.paper_ratio, 3),
                 number(compared.ours_over_paper(), 2),
+                samples(&compared.row).as_u64().map_or_else(String::new, |count| count.to_string()),
             ]);
         }
         let (scene, variant, _) = &self.rows[self.base];

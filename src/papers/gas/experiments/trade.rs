@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde_json::json;
 
-use super::{Context, gpu_ms, point};
+use super::{Context, gpu_ms, point, samples};
 use crate::image::{Rgba8, compare};
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
@@ -104,6 +104,7 @@ impl Trade {
                 json!(row.run.median_frame_ms()),
                 json!(gpu_ms(row, &["density-table", "shadow-table"])),
                 json!(gpu_ms(row, &["volume"])),
+                samples(row),
                 json!(difference.mean),
                 json!(difference.p99),
                 json!(difference.pixels),
@@ -111,7 +112,7 @@ impl Trade {
         }
         Ok(ResultTable {
             title: self.title,
-            columns: &["count", "frame ms", "tables ms", "volume ms", "Luv mean", "Luv p99", "pixels"],
+            columns: &["count", "frame ms", "tables ms", "volume ms", "samples", "Luv mean", "Luv p99", "pixels"],
             rows: table,
         })
     }
