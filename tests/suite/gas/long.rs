@@ -6,6 +6,7 @@ use fumarole::gpu::Device;
 use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture, Volume};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::{Rays, Sampling};
+use fumarole::papers::gas::reference::shadow_table::ShadowTables;
 use fumarole::papers::gas::{Parameters, Variant};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, Light, Mesh};
@@ -15,11 +16,10 @@ use super::drawing::Drawing;
 use super::march::{FRAME, gases, parameters};
 use crate::common::gpu_test;
 
-/// Largest difference of a drawing from rays in double precision.
-fn worst(drawing: &Drawing, parameters: &Parameters, is_shadowed: bool, sampling: Sampling) -> f64 {
-    let rays = Rays::new(parameters, parameters.scene_frame(0));
+/// Largest difference of a drawing from rays in double precision whose gas shadows itself.
+fn worst(drawing: &Drawing, parameters: &Parameters, rays: &Rays<'_>, sampling: Sampling) -> f64 {
     let difference = |pixel: u32| {
-        let gas = rays.pixel(pixel % parameters.width, pixel / parameters.width, is_shadowed, sampling);
+        let gas = rays.pixel(pixel % parameters.width, pixel / parameters.width, true, sampling);
         assert!(gas.transparency < 0.9, "there is no gas in pixel {pixel}");
         let expected = gas.color + parameters.background.as_dvec3() * gas.transparency;
         (drawing.color(pixel as usize) - expected).abs().max_element()
@@ -35,7 +35,8 @@ fn long_marches_are_those_of_their_rays() {
             let mut parameters = Parameters { steps, width, height, ..parameters(vec![gases()[1]]) };
             parameters.camera.vertical_fov_rad = 0.1;
             let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
-            let worst = worst(&drawing, &parameters, true, Sampling::Random);
+            let rays = Rays::new(&parameters, parameters.scene_frame(0));
+            let worst = worst(&drawing, &parameters, &rays, Sampling::Random);
             println!("{steps} steps: {worst:.1e} after {} runs", drawing.runs);
             assert!(worst < 5e-5, "{steps} steps: {worst}");
         }
@@ -43,7 +44,7 @@ fn long_marches_are_those_of_their_rays() {
 }
 
 /// Samples at random places of ever shorter steps come ever nearer to the integral, down to rounding, for every number of
-/// lights, with the eye outside and inside.
+/// lights, with the eye outside and inside; with shadows by a table, nearer to that over a table in double precision.
 #[test]
 fn more_steps_are_never_further_from_the_integral() {
     gpu_test(|device| {
@@ -56,23 +57,33 @@ fn more_steps_are_never_further_from_the_integral() {
             Light::Point { position: Vec3::new(-3.0, 2.0, -1.0), intensity: Vec3::new(8.0, 4.0, 6.0) },
         ];
         for (lights, eye) in [(1, 5.0), (2, 0.3), (3, 0.3), (4, 5.0)] {
-            let mut parameters = Parameters { lights: all[..lights].to_vec(), ..parameters(vec![gas]) };
+            let lights = all[..lights].to_vec();
+            let mut parameters = Parameters { lights, table_size: 12, ..parameters(vec![gas]) };
             (parameters.width, parameters.height) = (2, 1);
             parameters.camera = Camera { eye: Vec3::new(0.2, 0.1, eye), vertical_fov_rad: 0.2, ..parameters.camera };
-            let mut before = f64::INFINITY;
-            for steps in [10, 40, 200, 1000] {
-                parameters.steps = steps;
-                let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
-                // 4,000 parts in all: a straight line of constant gas to the light is exact for any step.
-                let exact = Parameters { steps: 40, ..parameters.clone() };
-                let error = worst(&drawing, &exact, true, Sampling::Fine(100));
-                println!("{lights} lights, eye at {eye}, {steps} steps: {error:.1e} after {} runs", drawing.runs);
-                assert!(error < before.max(2e-5), "{lights} lights, {steps} steps: {error} after {before}");
-                before = error;
+            for variant in [Variant::Traced, Variant::Table] {
+                comes_nearer_with_its_steps(device, variant, &parameters);
             }
-            assert!(before < 2e-5, "{lights} lights: {before}");
         }
     });
+}
+
+fn comes_nearer_with_its_steps(device: &Arc<Device>, variant: Variant, parameters: &Parameters) {
+    // 4,000 parts in all: a straight line of constant gas to the light is exact for any step.
+    let exact = Parameters { steps: 40, ..parameters.clone() };
+    let tables = ShadowTables::new(&exact, exact.scene_frame(0));
+    let rays = Rays::new(&exact, exact.scene_frame(0));
+    let rays = if variant == Variant::Table { rays.shadowed_by(&tables) } else { rays };
+    let name = format!("{variant:?}, {} lights", parameters.lights.len());
+    let mut before = f64::INFINITY;
+    for steps in [10, 40, 200, 1000] {
+        let drawing = Drawing::of(device, variant, &Parameters { steps, ..parameters.clone() }, &[]);
+        let error = worst(&drawing, &exact, &rays, Sampling::Fine(100));
+        println!("{name}, {steps} steps: {error:.1e} after {} runs", drawing.runs);
+        assert!(error < before.max(2e-5), "{name}, {steps} steps: {error} after {before}");
+        before = error;
+    }
+    assert!(before < 2e-5, "{name}: {before}");
 }
 
 /// So many sheets across the view, in no order of depth: all almost clear but the farthest, which is opaque.

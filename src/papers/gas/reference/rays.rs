@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::density::{Medium, inwardness};
 use super::noise::scramble;
 use super::phase::phase;
+use super::shadow_table::ShadowTables;
 use crate::papers::gas::blue_noise;
 use crate::papers::gas::model::Volume;
 use crate::papers::gas::parameters::{Jitter, Parameters};
@@ -39,6 +40,8 @@ pub struct Rays<'a> {
     number: u32,
     /// Ranks of the mask of blue noise; empty where samples lie at random.
     mask: Vec<u32>,
+    /// Shadows inside the gas are read from; traced without.
+    tables: Option<&'a ShadowTables<'a>>,
 }
 
 impl<'a> Rays<'a> {
@@ -48,7 +51,12 @@ impl<'a> Rays<'a> {
             Jitter::Random => Vec::new(),
             Jitter::BlueNoise => blue_noise::mask(parameters.seed),
         };
-        Rays { parameters, medium: Medium::new(parameters, number), number, mask }
+        Rays { parameters, medium: Medium::new(parameters, number), number, mask, tables: None }
+    }
+
+    /// The same, whose gas shadows itself by tables of the same scene frame (section "Calculation of the shadow table").
+    pub fn shadowed_by(self, tables: &'a ShadowTables<'a>) -> Self {
+        Rays { tables: Some(tables), ..self }
     }
 
     pub fn eye(&self) -> DVec3 {
@@ -203,9 +211,13 @@ impl March<'_> {
     /// The light that an element sends to the eye, for albedo 1: a gas by its phase function, a solid by its normal.
     fn light(&self, volume: &Volume, point: DVec3, are_shadowed: bool) -> DVec3 {
         let parameters = self.rays.parameters;
-        let of_light = |light: &Light| {
+        let of_light = |(number, light): (usize, &Light)| {
             let (direction, _, irradiance) = towards(light, point);
-            let depth = if are_shadowed { self.rays.optical_depth(point, light, 1) } else { 0.0 };
+            let depth = match self.rays.tables {
+                _ if !are_shadowed => 0.0,
+                None => self.rays.optical_depth(point, light, 1),
+                Some(tables) => tables.optical_depth(point, number),
+            };
             let response = if volume.is_solid {
                 self.normal(volume, point).dot(direction).max(0.0)
             } else {
@@ -213,7 +225,7 @@ impl March<'_> {
             };
             irradiance * (-depth).exp() * response
         };
-        parameters.ambient.as_dvec3() + parameters.lights.iter().map(of_light).sum::<DVec3>()
+        parameters.ambient.as_dvec3() + parameters.lights.iter().enumerate().map(of_light).sum::<DVec3>()
     }
 
     /// Direction in which the density falls the fastest, by central differences (Perlin and Hoffert).
