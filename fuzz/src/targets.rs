@@ -25,7 +25,7 @@ mod settings;
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 37] = [
+pub const ALL: [(&str, Target); 38] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -47,6 +47,7 @@ pub const ALL: [(&str, Target); 37] = [
     ("nvdb", |data| volume(&[("a.nvdb", data)])),
     ("png", picture),
     ("world", world),
+    ("sidecars", sidecars),
     ("materials", materials),
     ("record", record),
     ("compare", compared),
@@ -216,6 +217,13 @@ fn world(data: &[u8]) {
         }
         Err(error) => is_one_line(&error),
     }
+}
+
+/// What stands beside a grid: the text of its projection up to the first zero byte, and GDAL's file.
+fn sidecars(data: &[u8]) {
+    const GRID: &[u8] = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n1 2\n3 4\n";
+    let (projection, auxiliary) = parted(data);
+    height_map(&[("g.asc", GRID), ("g.prj", projection), ("g.asc.aux.xml", auxiliary)]);
 }
 
 /// Materials of two parts that have a colour each.

@@ -155,6 +155,54 @@ fn streamed_maps_come_from_a_file_that_is_made_once() {
     assert_eq!(kept().len(), 2);
 }
 
+/// Maps of files, mosaics and folders of tiles pass through the file of tiles as they are read whole, over flat and round bases.
+#[test]
+fn streamed_files_show_what_they_show_whole() {
+    let out = folder();
+    let (side, corner) = (150, "yllcorner 4000000\ncellsize 30");
+    let mut parts = String::new();
+    for (name, column) in [("west.asc", 0), ("east.asc", side - 1)] {
+        let height = |i: i32| {
+            (300.0 + 200.0 * (0.05 * f64::from(column + i % side)).sin() * (0.04 * f64::from(i / side)).cos()).round()
+        };
+        let rows: String = (0..side * side).map(|i| format!("{} ", height(i))).collect();
+        let x = 500_000 + 30 * column;
+        file(&out, name, format!("ncols {side}\nnrows {side}\nxllcorner {x}\n{corner}\n{rows}\n"));
+        parts += &format!(
+            "<SimpleSource><SourceFilename relativeToVRT=\"1\">{name}</SourceFilename><SourceBand>1</SourceBand>\
+             <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/>\
+             <DstRect xOff=\"{column}\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/></SimpleSource>"
+        );
+    }
+    let mosaic = format!(
+        "<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{side}\"><GeoTransform>500000, 30, 0, {}, 0, -30</GeoTransform>\
+         <VRTRasterBand dataType=\"Int16\" band=\"1\">{parts}</VRTRasterBand></VRTDataset>",
+        2 * side - 1,
+        4_000_000 + 30 * side
+    );
+    file(&out, "mosaic.vrt", mosaic);
+    std::fs::create_dir(out.path().join("tiles")).unwrap();
+    for (name, column) in [("N37E138", 0), ("N37E139", 1200)] {
+        let height =
+            |i: i32| (900.0 + 400.0 * (0.01 * f64::from(column + i % 1201)).sin()) as i16 + (i / 1201 % 97) as i16;
+        let samples: Vec<u8> = (0..1201 * 1201).flat_map(|i| height(i).to_be_bytes()).collect();
+        file(&out, &format!("tiles/{name}.hgt"), samples);
+    }
+    let read = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+    let jacksboro = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/maps/jacksboro.tif");
+    for map in [jacksboro, "mosaic.vrt", "tiles"] {
+        for base in ["plane", "earth"] {
+            let render = |options: &str| {
+                let render = format!("render --quiet --map {map} --base {base} --no-cache {options}");
+                small(&render).inside(out.path()).run().succeeded();
+            };
+            render("--variant gpu-compute --image whole.png");
+            render("--variant tiled-compute --stream --tile-memory 16 --image streamed.png");
+            assert!(read("whole.png") == read("streamed.png"), "{map} on {base}");
+        }
+    }
+}
+
 /// Only a GeoTIFF has overviews, and those that it has.
 #[test]
 fn overviews_are_those_of_a_geotiff() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fumarole::gpu::Compiler;
+use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Variant as _;
 use fumarole::measure::parameter::Choice;
 use fumarole::papers::terrain::reference::{is_lit, lambert};
@@ -14,7 +14,8 @@ use fumarole::scene::{Camera, HeightMap, Samples, shapes};
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
 use super::drawing::{Drawing, Painter, differing};
-use super::maps::map;
+use super::maps::{self, map};
+use super::ridges::{self, lens};
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
@@ -25,8 +26,6 @@ const SIZE: (u32, u32) = (48, 36);
 /// Distance by which single precision moves a ray, cells.
 const HAIR_CELLS: f64 = 2e-3;
 
-/// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
-/// lowered by a hair they must meet a map where it sees none.
 #[test]
 fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
     gpu_test(|device| {
@@ -34,54 +33,79 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
             for &interpolation in Interpolation::ALL {
                 let mut random = Random::new(seed);
                 let map = random_map(&mut random, Relief::Waves, (61, 44), 6.0);
-                let spacing_m = map.spacing_m().max_element();
-                let world = World::alone("shadow", base, interpolation, None, map);
+                let world = World::alone("waves", base, interpolation, None, map);
                 let azimuth_rad = random.range(0.0, 6.2);
                 let sun = Sun { azimuth_rad, elevation_rad: random.range(0.2, 0.5) };
-                let to_sun = world.turned(sun.direction().as_dvec3());
                 let cameras = [Stand::Above, Stand::Hovering].map(|stand| world.camera(stand, &mut random));
-                let parameters = Parameters { shadows: true, sun, ..world.parameters(cameras[0], SIZE) };
-                let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
-                let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
-                let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
-                let mut dda = [Variant::DdaCompute, Variant::DdaFragment, Variant::DdaCpu].map(paint);
-                let (mut lit, mut dark) = (0, 0);
-                for camera in cameras {
-                    let rays = Rays::new(&camera, SIZE.0, SIZE.1);
-                    let [compute, fragment, cpu] = painters.each_mut().map(|painter| painter.from(camera));
-                    for (pixel, (hit, sunlit)) in compute.hits.iter().zip(&compute.sunlit).enumerate().step_by(5) {
-                        if hit.surface == Surface::Sky {
-                            assert_eq!(*sunlit, 1.0);
-                            continue;
-                        }
-                        let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
-                        let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
-                        let depth_m = f64::from(hit.depth_m);
-                        let start = world.moved(rays.eye + depth_m * direction) + (spacing_m + 1e-5 * depth_m) * to_sun;
-                        let up = world.terrain.base.frame(world.terrain.base.place(start)).normal;
-                        let moved = |cells: f64| start + cells * world.cell_m() * up;
-                        let name = || format!("{base:?} {interpolation:?}: pixel {pixel}, {hit:?}");
-                        if *sunlit == 1.0 {
-                            lit += 1;
-                            assert!(is_lit(&world.terrain, moved(HAIR_CELLS), to_sun), "{} in the sun", name());
-                        } else {
-                            dark += 1;
-                            assert!(!is_lit(&world.terrain, moved(-HAIR_CELLS), to_sun), "{} in the shadow", name());
-                        }
-                    }
-                    let dda = dda.iter_mut().map(|painter| ("dda", painter.from(camera)));
-                    for (other, drawing) in [("fragment", fragment), ("cpu", cpu)].into_iter().chain(dda) {
-                        let differing = differing(&compute, &drawing);
-                        assert!(
-                            differing * 200 <= drawing.hits.len(),
-                            "{base:?} {interpolation:?}: {other} {differing}"
-                        );
-                    }
-                }
-                assert!(lit > 40 && dark > 5, "{base:?} {interpolation:?}: {lit} in the sun, {dark} in the shadow");
+                assert_shadows(device, &world, Lod::Exact, sun, cameras);
             }
         }
     });
+}
+
+/// As long as a pixel is smaller than a cell.
+#[test]
+fn shadows_of_rough_land_fall_at_every_level_of_detail() {
+    gpu_test(|device| {
+        let mut random = Random::new(47);
+        for base in ridges::BASES {
+            for &interpolation in Interpolation::ALL {
+                let map = maps::ridges(&mut random, (129, 97), 3000.0);
+                let world = World::alone("ridges", base, interpolation, None, map);
+                let near = lens(&world, DVec2::new(0.05, 0.1), 60.0, DVec2::new(0.4, 0.5), 0.25);
+                let across = lens(&world, DVec2::new(0.95, 0.9), 400.0, DVec2::new(0.3, 0.2), 0.25);
+                let sun = Sun { azimuth_rad: random.range(0.0, 6.2), elevation_rad: random.range(0.2, 0.5) };
+                for &lod in Lod::ALL {
+                    assert_shadows(device, &world, lod, sun, [near, across]);
+                }
+            }
+        }
+    });
+}
+
+/// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
+/// lowered by a hair they must meet a map where it sees none.
+fn assert_shadows(device: &Arc<Device>, world: &World, lod: Lod, sun: Sun, cameras: [Camera; 2]) {
+    let spacing_m = world.maps[0].map.spacing_m().max_element();
+    let to_sun = world.turned(sun.direction().as_dvec3());
+    let parameters = Parameters { shadows: true, sun, lod, ..world.parameters(cameras[0], SIZE) };
+    let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
+    let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
+    let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
+    let mut dda = [Variant::DdaCompute, Variant::DdaFragment, Variant::DdaCpu].map(paint);
+    let name = format!("{} {:?} {:?} {lod:?}", world.name, world.base, world.interpolation);
+    let (mut lit, mut dark) = (0, 0);
+    for camera in cameras {
+        let rays = Rays::new(&camera, SIZE.0, SIZE.1);
+        let [compute, fragment, cpu] = painters.each_mut().map(|painter| painter.from(camera));
+        for (pixel, (hit, sunlit)) in compute.hits.iter().zip(&compute.sunlit).enumerate().step_by(5) {
+            if hit.surface == Surface::Sky {
+                assert_eq!(*sunlit, 1.0);
+                continue;
+            }
+            let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
+            let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
+            let depth_m = f64::from(hit.depth_m);
+            let start = world.moved(rays.eye + depth_m * direction) + (spacing_m + 1e-5 * depth_m) * to_sun;
+            let up = world.terrain.base.frame(world.terrain.base.place(start)).normal;
+            let moved = |cells: f64| start + cells * world.cell_m() * up;
+            if *sunlit == 1.0 {
+                lit += 1;
+                let is_free = is_lit(&world.terrain, moved(HAIR_CELLS), to_sun);
+                assert!(is_free, "{name}: pixel {pixel}, {hit:?} in the sun");
+            } else {
+                dark += 1;
+                let meets = !is_lit(&world.terrain, moved(-HAIR_CELLS), to_sun);
+                assert!(meets, "{name}: pixel {pixel}, {hit:?} in the shadow");
+            }
+        }
+        let dda = dda.iter_mut().map(|painter| ("dda", painter.from(camera)));
+        for (other, drawing) in [("fragment", fragment), ("cpu", cpu)].into_iter().chain(dda) {
+            let differing = differing(&compute, &drawing);
+            assert!(differing * 200 <= drawing.hits.len(), "{name}: {other} {differing}");
+        }
+    }
+    assert!(lit > 40 && dark > 5, "{name}: {lit} in the sun, {dark} in the shadow");
 }
 
 /// Of the sun and of the sky from above, linear, and the haze at a great distance.

@@ -13,7 +13,7 @@ use super::silhouette::Silhouette;
 use super::world::World;
 use crate::common::gpu_test;
 
-const BASES: [Base; 3] =
+pub const BASES: [Base; 3] =
     [Base::Plane, Base::Cylinder { radius_m: 40_000.0 }, Base::Ellipsoid { equatorial_m: 60_000.0, polar_m: 50_000.0 }];
 const INTERPOLATIONS: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
 
