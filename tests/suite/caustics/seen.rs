@@ -54,8 +54,13 @@ fn hit(receiver: &ReceiverInput, eye: DVec3, ray: DVec3) -> Option<(f64, Surface
         let normal = ray.cross(ac);
         let determinant = ab.dot(normal);
         let weight_b = from_a.dot(normal) / determinant;
-        let weight_c = ray.dot(from_a.cross(ab)) / determinant;
-        let distance = ac.dot(from_a.cross(ab)) / determinant;
+        // Most triangles are missed by it already.
+        if !(0.0..=1.0).contains(&weight_b) {
+            return None;
+        }
+        let turned = from_a.cross(ab);
+        let weight_c = ray.dot(turned) / determinant;
+        let distance = ac.dot(turned) / determinant;
         let weights = [1.0 - weight_b - weight_c, weight_b, weight_c];
         (distance > 0.0 && weights.iter().all(|&fraction| fraction >= 0.0)).then(|| {
             let normal: DVec3 = (0..3).map(|i| at(&mesh.normals, corners[i]) * weights[i]).sum();

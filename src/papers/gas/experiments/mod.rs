@@ -165,7 +165,8 @@ fn point(label: &str, x: f64, study: Setup, variant: Variant) -> Point<Setup> {
 /// GPU time of passes of a row, their medians summed, milliseconds.
 fn gpu_ms(row: &Row, names: &[&str]) -> f64 {
     let passes = row.run.passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
-    passes.filter_map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).sum()
+    // What sums up nothing is 0, not -0.
+    passes.filter_map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).fold(0.0, |sum, ms| sum + ms)
 }
 
 /// Evaluations of the density along the viewer's rays in the last frame; null of several bands.
