@@ -67,7 +67,6 @@ fn skipped_bricks_are_compared() {
         assert!(samples.iter().rev().is_sorted() && samples[3] > 0, "{table}");
         assert!(luv[..2].iter().all(|luv| *luv == 0.0) && luv[3] < 0.5, "{table}");
     }
-    assert!(samples.chunks(4).all(|of_one| of_one[3] < of_one[0]), "{table}");
     let ball = &samples[16..20];
     assert!(ball[1] * 3 < ball[0] * 2, "most of its box is empty: {table}");
 }
