@@ -30,6 +30,8 @@ fn sweeps_and_the_share_of_turbulence_are_written() {
     let by_steps = table("steps", "--counts 4,16,64 --size 90x62");
     let luv = column(&by_steps, "Luv mean", Value::as_f64);
     assert!(luv[1] < luv[0] && luv[1] > 0.0 && luv[2] == 0.0, "{by_steps}");
+    // There are no tables, and no -0 of them.
+    assert!(column(&by_steps, "tables ms", Value::as_f64).into_iter().all(|ms| ms.to_bits() == 0), "{by_steps}");
     assert!(column(&by_steps, "samples", Value::as_u64).is_sorted_by(|fewer, more| 2 * fewer < *more), "{by_steps}");
     // Of times, so short ones on a busy machine may even be the other way round.
     let noise = table("noise", "--steps 20 --size 90x62");
