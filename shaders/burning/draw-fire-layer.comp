@@ -18,8 +18,8 @@ layout(local_size_x = 8, local_size_y = 4) in;
 #include "burning/fire-tiles.glsl"
 
 layout(set = 0, binding = 45) uniform texture2D mesh_depth;
-layout(set = 0, binding = 118) uniform utexture2D masks; // of the lines
-layout(set = 0, binding = 119) uniform texture2D records; // of the particles
+layout(set = 0, binding = 118, r32ui) uniform readonly uimage2D masks; // of the lines
+layout(set = 0, binding = 119, rgba32f) uniform readonly image2D records; // of the particles
 #ifdef START_CLEAR
 layout(set = 0, binding = 120, rgba16f) uniform writeonly image2D fire_layer;
 #else
@@ -48,7 +48,7 @@ vec4 start(ivec2 pixel) {
 }
 
 uint reaching(uint word, ivec2 lines) {
-    return texelFetch(masks, ivec2(word, lines.x), 0).x & texelFetch(masks, ivec2(word, lines.y), 0).x;
+    return imageLoad(masks, ivec2(word, lines.x)).x & imageLoad(masks, ivec2(word, lines.y)).x;
 }
 
 // Of a particle.
@@ -67,8 +67,8 @@ const float FARTHEST = 1.0e30; // beyond all that is drawn
 Square square_of(uint slot) {
     bool is_there = slot != NONE;
     ivec2 record = record_at(is_there ? slot : 0u);
-    vec4 place = texelFetch(records, record, 0);
-    vec4 own = texelFetch(records, record + ivec2(0, 1), 0);
+    vec4 place = imageLoad(records, record);
+    vec4 own = imageLoad(records, record + ivec2(0, 1));
     place = is_there ? place : vec4(0.0);
     own = is_there ? own : vec4(FARTHEST, vec3(0.0));
     return Square(place.xy, place.zw, own.x, own.y, own.z);
@@ -77,7 +77,7 @@ Square square_of(uint slot) {
 // Of smoke, and its opacity.
 vec4 color_of(uint slot) {
     bool is_there = slot != NONE;
-    vec4 color = texelFetch(records, record_at(is_there ? slot : 0u) + ivec2(0, 2), 0);
+    vec4 color = imageLoad(records, record_at(is_there ? slot : 0u) + ivec2(0, 2));
     return is_there ? color : vec4(0.0);
 }
 

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/cells.glsl"
+#include "lava/by-cells.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D positions;
 
@@ -15,17 +16,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Items {
     uvec2 list[]; // cell and particle, by cells
 } items;
 
-layout(set = 0, binding = 2, std430) buffer Xs {
-    float list[]; // metres
-} xs;
-
-layout(set = 0, binding = 3, std430) buffer Ys {
-    float list[];
-} ys;
-
-layout(set = 0, binding = 4, std430) buffer Zs {
-    float list[];
-} zs;
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2D places_by_cells; // metres
 
 layout(set = 0, binding = 5, std430) buffer Reached {
     uint list[];
@@ -41,7 +32,5 @@ void main() {
     }
     uint particle = items.list[at].y;
     vec3 position_m = inside(texelFetch(positions, ivec2(particle % cells.width, particle / cells.width), 0).xyz);
-    xs.list[at] = position_m.x;
-    ys.list[at] = position_m.y;
-    zs.list[at] = position_m.z;
+    imageStore(places_by_cells, texel_of(at), vec4(position_m, 0.0));
 }

@@ -8,6 +8,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#include "lava/by-cells.glsl"
+
 layout(push_constant, std430) uniform Gather {
     vec3 space_m;
     float per_radius; // 1 / h, per metre
@@ -23,17 +25,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Starts {
     uint list[];
 } starts;
 
-layout(set = 0, binding = 1, std430) readonly buffer Xs {
-    float list[]; // metres, by cells
-} xs;
-
-layout(set = 0, binding = 2, std430) readonly buffer Ys {
-    float list[];
-} ys;
-
-layout(set = 0, binding = 3, std430) readonly buffer Zs {
-    float list[];
-} zs;
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D places_by_cells; // metres
 
 layout(set = 0, binding = 4, std430) buffer Reached {
     uint list[]; // of each piece: 0, or REACHED where some stretch has it; 2 for the first
@@ -48,8 +40,9 @@ const float NO_PLANE_M = 1.0e9;
 
 // F over its peak, at four heights.
 vec4 metaballs(uint at, uint end, vec2 column_m, vec4 heights_m) {
-    vec2 across = (vec2(xs.list[at], zs.list[at]) - column_m) * gather.per_radius;
-    vec4 up = (heights_m - ys.list[at]) * gather.per_radius;
+    vec3 place_m = imageLoad(places_by_cells, texel_of(min(at, end - 1u))).xyz;
+    vec2 across = (place_m.xz - column_m) * gather.per_radius;
+    vec4 up = (heights_m - place_m.y) * gather.per_radius;
     // Far away a square may be infinite.
     vec4 a_squared = min(dot(across, across) + up * up, 2.0);
     vec4 inside = at < end ? max(1.0 - a_squared, 0.0) : vec4(0.0);

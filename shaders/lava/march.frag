@@ -17,9 +17,7 @@ layout(set = 0, binding = 2, std430) readonly buffer Highest {
     float all; // place of the height field, metres
 } highest;
 
-layout(set = 0, binding = 5, std430) readonly buffer Heights {
-    float list[]; // metres, row by row
-} heights;
+layout(set = 0, binding = 5, rgba32f) uniform readonly image2D patches; // of highest-rows.comp
 
 #include "lava/height.glsl"
 #include "lava/color.glsl"
@@ -36,17 +34,10 @@ struct Hit {
     vec3 side; // normal of a wall, no vector for the sheet
 };
 
-float height_of(vec2 column) {
-    uvec2 at = uvec2(clamp(column, vec2(0.0), scene.columns - 1.0));
-    return heights.list[at.y * uint(scene.columns.x) + at.x];
-}
-
-// The sheet's height over a cell: at its first corner, its slopes along both sides from there, and its twist.
+// The sheet's height over a cell, the first of which is -1, -1: at its first corner, its slopes along both sides from there, and its
+// twist.
 vec4 patch_of(vec2 cell) {
-    float first = height_of(cell);
-    float across = height_of(cell + vec2(1.0, 0.0)) - first;
-    float down = height_of(cell + vec2(0.0, 1.0)) - first;
-    return vec4(first, across, down, height_of(cell + vec2(1.0, 1.0)) - first - across - down);
+    return imageLoad(patches, ivec2(cell) + 1);
 }
 
 float height_in(vec4 sheet, vec2 at) {

@@ -9,12 +9,13 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/sph-began.glsl"
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
 #include "lava/sph-inside.glsl"
 #include "lava/sph-lists.glsl"
 
-layout(set = 0, binding = 4) uniform texture2D pushing; // metres, and lambda times h^-2
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D pushing; // metres, and lambda times h^-2
 
 layout(set = 0, binding = 6, rgba32f) uniform image2D corrected; // metres
 
@@ -26,10 +27,10 @@ vec3 place_m;
 float factor;
 vec3 pushed = vec3(0.0);
 
-void gather(uint i) {
-    vec4 other = texelFetch(pushing, texel_of(i), 0);
+void gather(uint i, float weight) {
+    vec4 other = imageLoad(pushing, texel_of(i));
     vec3 way = apart(place_m - other.xyz) / flow.support_m;
-    pushed += (factor + other.w) * slope(length(way)) * way;
+    pushed += weight * (factor + other.w) * slope(length(way)) * way;
 }
 
 #include "lava/sph-gather.glsl"
@@ -39,7 +40,7 @@ void main() {
     if (at >= flow.particles) {
         return;
     }
-    vec4 own = texelFetch(pushing, texel_of(at), 0);
+    vec4 own = imageLoad(pushing, texel_of(at));
     place_m = own.xyz;
     if (unmet.any[(flow.turn + 2u) % 3u] == 0u) {
         imageStore(corrected, texel_of(at), vec4(place_m, 0.0));

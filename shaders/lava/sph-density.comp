@@ -11,11 +11,12 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/sph-began.glsl"
 #include "lava/bed.glsl"
 #include "lava/sph-walls.glsl"
 #include "lava/sph-lists.glsl"
 
-layout(set = 0, binding = 4) uniform texture2D predicted; // metres
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D predicted; // metres
 
 layout(set = 0, binding = 5, std430) buffer Factors {
     vec2 list[]; // lambda times h^-2, and the density over that at rest
@@ -38,11 +39,11 @@ float sum = 0.0;
 vec3 own = vec3(0.0);
 float others = 0.0;
 
-void gather(uint i) {
-    vec3 way = apart(place_m - texelFetch(predicted, texel_of(i), 0).xyz) / flow.support_m;
+void gather(uint i, float weight) {
+    vec3 way = apart(place_m - imageLoad(predicted, texel_of(i)).xyz) / flow.support_m;
     float q = length(way);
-    sum += kernel(q);
-    vec3 gradient = flow.volume * slope(q) * way;
+    sum += weight * kernel(q);
+    vec3 gradient = weight * flow.volume * slope(q) * way;
     own += gradient;
     others += dot(gradient, gradient);
 }
@@ -58,7 +59,7 @@ void main() {
     if (at == 0u) {
         unmet.any[(flow.turn + 1u) % 3u] = 0u;
     }
-    place_m = texelFetch(predicted, texel_of(at), 0).xyz;
+    place_m = imageLoad(predicted, texel_of(at)).xyz;
     if (is_met) {
         imageStore(pushing, texel_of(at), vec4(place_m, 0.0));
         return;

@@ -17,7 +17,7 @@ layout(local_size_x = 64) in;
 #include "lava/sph-began.glsl"
 #include "lava/sph-drag.glsl"
 
-layout(set = 0, binding = 4, rgba32f) uniform image2D drags; // as the lists
+layout(set = 0, binding = 4, rgba32f) uniform image2D drags; // as the lists, 0 for what only fills up the last four
 
 layout(set = 0, binding = 5, std430) buffer WallDrags {
     float list[];
@@ -32,13 +32,13 @@ void main() {
     float viscosity = viscosity_at(at);
     uint listed = reach_of(at).x;
     for (uint first = 0u; first < listed; first += 4u) {
-        vec4 four = neighbours_of(at, first);
+        uvec4 four = neighbours_of(at, first);
         vec4 drag = vec4(0.0);
         for (uint n = 0u; n < 4u; n++) {
-            drag = vec4(drag.yzw, drag_by(place_m, viscosity, uint(four.x)));
+            drag = vec4(drag.yzw, drag_by(place_m, viscosity, four.x));
             four = four.yzwx;
         }
-        imageStore(drags, four_of(at, first), drag);
+        imageStore(drags, four_of(at, first), weights_of(listed - first) * drag);
     }
     // Of a particle's drag without its own discretization's factor.
     wall_drags.list[at] = flow.drag / flow.laplacian * viscosity * wall_drag(walls_at(place_m));

@@ -24,6 +24,6 @@ float mean_of(float a, float b) {
 #endif
 
 float drag_by(vec3 place_m, float viscosity, uint i) {
-    float q = length(apart(place_m - began_near_m(i))) / flow.support_m;
+    float q = length(apart(place_m - began_m(i))) / flow.support_m;
     return -flow.drag * mean_of(viscosity, viscosity_at(i)) * slope(q);
 }

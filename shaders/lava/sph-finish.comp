@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/sph-began.glsl"
 
 layout(set = 0, binding = 4) uniform texture2D predicted; // metres
 

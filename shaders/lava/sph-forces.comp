@@ -30,8 +30,6 @@ layout(set = 0, binding = 9, std430) readonly buffer Lasting {
     vec4 list[]; // by particles: metres per second that viscosity changed
 } lasting;
 
-layout(set = 0, binding = 15, rgba32f) uniform image2D began; // metres
-
 layout(set = 0, binding = 14, std430) buffer Unmet {
     uint any[3]; // of `sph-viscosity`
 } unmet;
@@ -52,6 +50,5 @@ void main() {
     pushed.list[at] = after;
     vec3 changed = flow.kept * lasting.list[particle].xyz;
     imageStore(to, texel_of(at), vec4(after.xyz + changed, 0.0));
-    imageStore(began, texel_of(at), vec4(began_m(at), 0.0));
     change.list[at] = vec4(0.0);
 }

@@ -78,11 +78,11 @@ float kelvin;
 float conducted = 0.0;
 vec3 gradient = vec3(0.0);
 
-void gather(uint i) {
-    vec3 way = apart(place_m - began_near_m(i)) / flow.support_m;
-    float weight = slope(length(way));
-    conducted -= weight * (kelvin_of(i) - kelvin);
-    gradient += weight * way;
+void gather(uint i, float weight) {
+    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    float steep = weight * slope(length(way));
+    conducted -= steep * (kelvin_of(i) - kelvin);
+    gradient += steep * way;
 }
 
 #include "lava/sph-gather.glsl"

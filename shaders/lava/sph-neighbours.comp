@@ -6,14 +6,11 @@
 // places a list reaches farther than the kernel, since corrections move particles. More than a list holds, and particles
 // that none was made for, are left to walks over all of 27 cells.
 
-#extension GL_EXT_samplerless_texture_functions : require
-
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
-
-layout(set = 0, binding = 4) uniform texture2D places; // metres
+#include "lava/sph-began.glsl"
 
 layout(set = 0, binding = 12, rgba32f) uniform image2D neighbours; // four numbers by cells in a texel
 
@@ -27,8 +24,18 @@ layout(set = 0, binding = 5, std430) buffer Crowded {
 } crowded;
 
 const float REACH = 1.0; // in radii of the kernel
+
+vec3 place_of(uint at) {
+    return began_m(at);
+}
 #else
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D predicted; // metres
+
 const float REACH = 1.1;
+
+vec3 place_of(uint at) {
+    return imageLoad(predicted, texel_of(at)).xyz;
+}
 #endif
 
 // The last of four that are there come first.
@@ -37,30 +44,44 @@ vec4 begun(vec4 four, uint count) {
     return rest == 1u ? four.wxyz : rest == 2u ? four.zwxy : four.yzwx;
 }
 
+vec3 place_m;
+float reach_m;
+uint count = 0u;
+vec4 four = vec4(0.0); // the last that are near
+vec4 full; // four of the list, once it has as many more
+
+void look_at(uint i, uint end) {
+    vec3 way_m = apart(place_m - place_of(min(i, end - 1u)));
+    bool is_near = i < end && dot(way_m, way_m) < reach_m * reach_m;
+    four = is_near ? vec4(four.yzw, float(int(i))) : four;
+    count += is_near ? 1u : 0u;
+    full = (count & 3u) == 0u ? four : full;
+}
+
 void main() {
     uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }
     vec3 began = began_m(at);
-    vec3 place_m = texelFetch(places, texel_of(at), 0).xyz;
-    float reach_m = REACH * flow.support_m;
+    place_m = place_of(at);
+    reach_m = REACH * flow.support_m;
     uint most = at < flow.listed ? LISTED : 0u;
-    uint count = 0u;
-    vec4 four = vec4(0.0);
     bool is_crowded = false;
     for (int z = -1; z <= 1; z++) {
         for (int x = -1; x <= 1; x++) {
             uvec2 stretch = stretch_at(began, x, z);
             uint end = min(stretch.y, stretch.x + MOST);
             is_crowded = is_crowded || end < stretch.y;
-            for (uint i = stretch.x; i < end; i++) {
-                vec3 way_m = apart(place_m - texelFetch(places, texel_of(i), 0).xyz);
-                bool is_near = dot(way_m, way_m) < reach_m * reach_m;
-                four = is_near ? vec4(four.yzw, float(i)) : four;
-                count += is_near ? 1u : 0u;
-                if (is_near && (count & 3u) == 0u && count <= most) {
-                    imageStore(neighbours, four_of(at, count - 4u), four);
+            for (uint first = stretch.x; first < end; first += 4u) {
+                uint before = count;
+                look_at(first, end);
+                look_at(first + 1u, end);
+                look_at(first + 2u, end);
+                look_at(first + 3u, end);
+                // One of them at most makes four of the list full.
+                if (before / 4u < count / 4u && count / 4u * 4u <= most) {
+                    imageStore(neighbours, four_of(at, before), full);
                 }
             }
         }

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
+#include "lava/sph-began.glsl"
 #include "lava/bed.glsl"
 #include "lava/sph-inside.glsl"
 

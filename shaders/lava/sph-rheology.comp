@@ -5,8 +5,6 @@
 // rate of strain that the last step left. It is regularised by a largest viscosity (O'Donovan and Tanner 1984). Pressure shakes
 // single particles, which is no flow: the tensor is the mean of those around, by the kernel.
 
-#extension GL_EXT_samplerless_texture_functions : require
-
 layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
@@ -41,13 +39,13 @@ const float MOST_BITS = 60.0; // of a ratio that single precision holds
 vec3 place_m;
 vec3 diagonal = vec3(0.0);
 vec3 beside = vec3(0.0);
-float weights = 0.0;
+float shares = 0.0;
 
-void gather(uint i) {
-    float weight = kernel(length(apart(place_m - began_near_m(i))) / flow.support_m);
-    diagonal += weight * along.list[i].xyz;
-    beside += weight * across.list[i].xyz;
-    weights += weight;
+void gather(uint i, float weight) {
+    float share = weight * kernel(length(apart(place_m - began_m(i))) / flow.support_m);
+    diagonal += share * along.list[i].xyz;
+    beside += share * across.list[i].xyz;
+    shares += share;
 }
 
 #include "lava/sph-gather.glsl"
@@ -60,7 +58,7 @@ void main() {
     place_m = began_m(at);
     gather_around(at, place_m);
     // The root of twice the sum of the squares of all components of the mean.
-    float strain_per_s = sqrt(2.0 * dot(diagonal, diagonal) + dot(beside, beside)) / weights;
+    float strain_per_s = sqrt(2.0 * dot(diagonal, diagonal) + dot(beside, beside)) / shares;
     float kelvin = heat.list[at].x;
     float fit = BITS * B_K * (1.0 / max(kelvin - C_K, COLDEST_K) - 1.0 / (flow.melt_k - C_K));
     float melt = exp2(min(fit, MOST_BITS));

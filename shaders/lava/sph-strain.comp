@@ -62,11 +62,11 @@ vec3 pushed_m_s;
 mat3 slopes = mat3(0.0);
 mat3 moment = mat3(0.0);
 
-void gather(uint i) {
-    vec3 way = apart(place_m - began_near_m(i)) / flow.support_m;
-    vec3 weight = flow.laplacian * slope(length(way)) * way;
-    slopes += outer(pushed.list[i].xyz - pushed_m_s, weight);
-    moment -= outer(way, weight);
+void gather(uint i, float weight) {
+    vec3 way = apart(place_m - began_m(i)) / flow.support_m;
+    vec3 steep = weight * flow.laplacian * slope(length(way)) * way;
+    slopes += outer(pushed.list[i].xyz - pushed_m_s, steep);
+    moment -= outer(way, steep);
 }
 
 #include "lava/sph-gather.glsl"

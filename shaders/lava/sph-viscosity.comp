@@ -14,10 +14,17 @@ layout(local_size_x = 64) in;
 #include "common/elements.glsl"
 #include "lava/sph.glsl"
 #include "lava/sph-lists.glsl"
-#include "lava/sph-began.glsl"
+
+// Asked for where there is no list alone, so sampled: the other four are as many storage images as every device has.
+layout(set = 0, binding = 1) uniform texture2D places_by_cells; // metres, as the step begins
+
+vec3 began_m(uint at) {
+    return texelFetch(places_by_cells, texel_of(at), 0).xyz;
+}
+
 #include "lava/sph-drag.glsl"
 
-layout(set = 0, binding = 4) uniform texture2D drags; // as the lists
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D drags; // as the lists, 0 for what only fills up the last four
 
 layout(set = 0, binding = 5, std430) readonly buffer WallDrags {
     float list[];
@@ -27,7 +34,7 @@ layout(set = 0, binding = 6, std430) readonly buffer Pushed {
     vec4 list[]; // metres per second
 } pushed;
 
-layout(set = 0, binding = 7) uniform texture2D from;
+layout(set = 0, binding = 7, rgba32f) uniform readonly image2D from;
 
 layout(set = 0, binding = 8, rgba32f) uniform image2D to;
 
@@ -40,7 +47,7 @@ layout(set = 0, binding = 14, std430) buffer Unmet {
 } unmet;
 
 vec3 velocity_of(uint at) {
-    return texelFetch(from, texel_of(at), 0).xyz;
+    return imageLoad(from, texel_of(at)).xyz;
 }
 
 // Of what gravity changes in a step.
@@ -63,14 +70,12 @@ void main() {
     uvec2 reach = reach_of(at);
     vec3 dragged = wall_drags.list[at] * velocity;
     for (uint first = 0u; first < reach.x; first += 4u) {
-        vec4 four = neighbours_of(at, first);
-        vec4 drag = texelFetch(drags, four_of(at, first), 0);
-        uint count = min(reach.x - first, 4u);
-        for (uint n = 0u; n < count; n++) {
-            dragged += drag.x * (velocity - velocity_of(uint(four.x)));
-            drag = drag.yzwx;
-            four = four.yzwx;
-        }
+        uvec4 four = neighbours_of(at, first);
+        vec4 drag = imageLoad(drags, four_of(at, first));
+        dragged += drag.x * (velocity - velocity_of(four.x));
+        dragged += drag.y * (velocity - velocity_of(four.y));
+        dragged += drag.z * (velocity - velocity_of(four.z));
+        dragged += drag.w * (velocity - velocity_of(four.w));
     }
     if (reach.y > 0u) {
         vec3 place_m = began_m(at);

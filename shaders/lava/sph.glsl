@@ -1,6 +1,8 @@
 // Smoothed particle hydrodynamics of the variant of stage one that flows: constants, the kernel, walls, and the cells
 // around a particle. Particles are in the order of their cells; cells along y follow each other.
 
+#include "lava/by-cells.glsl"
+
 layout(push_constant, std430) uniform Flow {
     vec3 space_m;
     uint particles;
@@ -34,38 +36,19 @@ layout(set = 0, binding = 0, std430) readonly buffer Starts {
     uint list[];
 } starts;
 
-layout(set = 0, binding = 1, std430) readonly buffer Xs {
-    float list[]; // metres, by cells, as the step begins
-} xs;
-
-layout(set = 0, binding = 2, std430) readonly buffer Ys {
-    float list[];
-} ys;
-
-layout(set = 0, binding = 3, std430) readonly buffer Zs {
-    float list[];
-} zs;
-
 // lavapipe ends all loops of a shader after 65,535 iterations: nine stretches of so many particles.
 const uint MOST = 7200u;
 const uint LISTED = 96u; // particles of a list; a lattice at rest has 77 within the farther reach
-const uint ROW_BITS = 12u; // of the textures by cells: every device has so long rows
+const uint EIGHTS = 21u; // whose lists fill a row of a texture
 const uint WALKS = 0xffffffffu; // in place of a list's length: all of 27 cells are looked at
 const float SIGMA = 3.34225380493; // 21 / (2 pi)
 
-// Of a particle in a texture by cells.
-ivec2 texel_of(uint at) {
-    return ivec2(int(at & ((1u << ROW_BITS) - 1u)), int(at >> ROW_BITS));
-}
-
-// Of four of its list.
+// Of four of its list. The lists of eight particles, which are looked at together, lie side by side, four after four, and so
+// does all that a cache's line and a page hold.
 ivec2 four_of(uint at, uint first) {
-    ivec2 texel = texel_of(at);
-    return ivec2(texel.x, texel.y * int(LISTED / 4u) + int(first / 4u));
-}
-
-vec3 began_m(uint at) {
-    return vec3(xs.list[at], ys.list[at], zs.list[at]);
+    uint eight = at / 8u;
+    uint along = (eight % EIGHTS * (LISTED / 4u) + first / 4u) * 8u + at % 8u;
+    return ivec2(int(along), int(eight / EIGHTS));
 }
 
 // Wendland's kernel C2 (1995) in units of h^-3: SIGMA (1 - q)^4 (1 + 4 q).

@@ -9,6 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "lava/sph.glsl"
+#include "lava/sph-began.glsl"
 #include "lava/bed.glsl"
 #include "lava/crowded.glsl"
 

@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants BASE=plane,curved INTERPOLATION=bilinear,packed,bicubic LOD=pixel,exact
+#pragma variants BASE=plane,curved INTERPOLATION=bilinear,packed16,packed32,bicubic LOD=pixel,exact
 
 #extension GL_EXT_samplerless_texture_functions : require
 

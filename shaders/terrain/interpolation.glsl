@@ -107,7 +107,7 @@ const ivec2 REACH = ivec2(0, 1);
 
 // The values at a cell's corners: north-west, north-east, south-west, south-east.
 vec4 values_around(int shift, ivec2 a) {
-#ifdef INTERPOLATION_PACKED
+#ifdef IS_PACKED
     return corners_of(shift, a);
 #else
     ivec2 b = min(a + 1, last_texel(shift));

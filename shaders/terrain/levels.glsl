@@ -1,15 +1,25 @@
-#ifdef INTERPOLATION_PACKED
+#if defined(INTERPOLATION_PACKED16) || defined(INTERPOLATION_PACKED32)
+#define IS_PACKED
 // The levels of the map as rays over bilinear terrain read them: the corners of a cell by one fetch, and what bounds blocks of cells in an
-// image of its own, as floats.
+// image of its own, as floats. Storage images: lavapipe calls a function for a texel of a sampled one, beside which nothing stays in
+// registers.
 
-layout(set = 0, binding = 6) uniform utexture2D corners; // corners.frag
-layout(set = 0, binding = 7) uniform texture2D coarser; // coarser.frag
+#ifdef INTERPOLATION_PACKED16
+layout(set = 0, binding = 6, rgba16ui) uniform readonly uimage2D corners; // corners.frag
+#else
+layout(set = 0, binding = 6, rgba32ui) uniform readonly uimage2D corners;
+#endif
+layout(set = 0, binding = 7, r32f) uniform readonly image2D coarser; // coarser.frag
 
 // Of a cell of a level: north-west, north-east, south-west, south-east.
 vec4 corners_of(int shift, ivec2 cell) {
     ivec2 origin = shift == 0 ? ivec2(0) : (map.spread >> shift) + map.beside;
-    uvec4 bits = texelFetch(corners, origin + cell, 0);
-    return map.is_float ? uintBitsToFloat(bits) : vec4(ivec4(bits));
+    uvec4 bits = imageLoad(corners, origin + cell);
+#ifdef INTERPOLATION_PACKED16
+    return vec4(ivec4(bits));
+#else
+    return uintBitsToFloat(bits);
+#endif
 }
 
 float highest_at(int shift, ivec2 texel) {
@@ -17,7 +27,7 @@ float highest_at(int shift, ivec2 texel) {
 }
 
 float value_above(int layer, int shift, ivec2 texel) {
-    return texelFetch(coarser, (map.spread >> shift) + texel, 0).x;
+    return imageLoad(coarser, (map.spread >> shift) + texel).x;
 }
 #else
 // The levels of the map as one image. Layer 0 holds the data, the others the coarser levels, each beginning at its padded width.

@@ -40,24 +40,28 @@ Local local_at(vec2 place, float height_m) {
     return local;
 }
 
-// The slope at a node of a level: that of the line through its neighbours, of the line to the only one at a border.
-vec2 slope_at_node(int shift, ivec2 node) {
-    ivec2 low = max(node - 1, ivec2(0));
-    ivec2 high = min(node + 1, last_texel(shift));
-    vec2 rise = vec2(highest_at(shift, ivec2(high.x, node.y)) - highest_at(shift, ivec2(low.x, node.y)),
-                     highest_at(shift, ivec2(node.x, high.y)) - highest_at(shift, ivec2(node.x, low.y)));
-    return rise / vec2(max(high - low, ivec2(1)));
-}
-
 // The slopes of a cell's nodes, interpolated: without the steps that those of a bilinear surface have at a cell's borders. The
-// paper's eq. 7 has those steps; where a cell is larger than a pixel they are seen.
+// paper's eq. 7 has those steps; where a cell is larger than a pixel they are seen. A node's slope is that of the line through its
+// neighbours, of the line to the only one at a border: twelve nodes for all four.
 vec2 slope_between_nodes(int shift, vec2 place) {
     vec4 cell = cell_at(shift, place);
     ivec2 a = ivec2(cell.xy);
     ivec2 b = min(a + 1, last_texel(shift));
-    vec2 north = mix(slope_at_node(shift, a), slope_at_node(shift, ivec2(b.x, a.y)), cell.z);
-    vec2 south = mix(slope_at_node(shift, ivec2(a.x, b.y)), slope_at_node(shift, b), cell.z);
-    return mix(north, south, cell.w);
+    ivec2 low = max(a - 1, ivec2(0));
+    ivec2 high = min(b + 1, last_texel(shift));
+    vec4 at = vec4(highest_at(shift, a), highest_at(shift, ivec2(b.x, a.y)), highest_at(shift, ivec2(a.x, b.y)),
+                   highest_at(shift, b));
+    vec2 west = vec2(highest_at(shift, ivec2(low.x, a.y)), highest_at(shift, ivec2(low.x, b.y)));
+    vec2 east = vec2(highest_at(shift, ivec2(high.x, a.y)), highest_at(shift, ivec2(high.x, b.y)));
+    vec2 north = vec2(highest_at(shift, ivec2(a.x, low.y)), highest_at(shift, ivec2(b.x, low.y)));
+    vec2 south = vec2(highest_at(shift, ivec2(a.x, high.y)), highest_at(shift, ivec2(b.x, high.y)));
+    vec2 to_a = vec2(max(b - low, ivec2(1)));
+    vec2 to_b = vec2(max(high - a, ivec2(1)));
+    vec2 north_west = vec2(at.y - west.x, at.z - north.x) / to_a;
+    vec2 north_east = vec2(east.x - at.x, at.w - north.y) / vec2(to_b.x, to_a.y);
+    vec2 south_west = vec2(at.w - west.y, south.x - at.x) / vec2(to_a.x, to_b.y);
+    vec2 south_east = vec2(east.y - at.z, south.y - at.y) / to_b;
+    return mix(mix(north_west, north_east, cell.z), mix(south_west, south_east, cell.z), cell.w);
 }
 
 vec4 normal_of(ivec2 pixel, vec4 hit) {

@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants INTERPOLATION=bilinear,packed,bicubic
+#pragma variants INTERPOLATION=bilinear,packed16,packed32,bicubic
 
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -230,10 +230,11 @@ fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String>
                 _ => Ok(Some(Access::UniformRead(stages))),
             }
         }
-        (BindingKind::StorageBuffer { readonly: true }, Resource::Buffer(_)) => Ok(Some(Access::StorageRead(stages))),
-        (BindingKind::StorageBuffer { readonly: false }, Resource::Buffer(_)) => Ok(Some(Access::StorageWrite(stages))),
         (BindingKind::SampledImage, Resource::Image(_)) => Ok(Some(Access::SampledRead(stages))),
-        (BindingKind::StorageImage { .. }, Resource::Image(_)) => Ok(Some(Access::StorageWrite(stages))),
+        (BindingKind::StorageBuffer { readonly }, Resource::Buffer(_))
+        | (BindingKind::StorageImage { readonly, .. }, Resource::Image(_)) => {
+            Ok(Some(if readonly { Access::StorageRead(stages) } else { Access::StorageWrite(stages) }))
+        }
         (BindingKind::Sampler, Resource::Sampler(_)) => Ok(None),
         (BindingKind::CombinedImageSampler, _) => {
             Err(format!("{} is a combined image and sampler; declare a texture and a sampler", slot.name))
@@ -286,7 +287,7 @@ fn check_resource(device: &Device, slot: &Slot, resource: &Resource) -> Result<(
             let Some(shape) = slot.image else { return Ok(()) };
             let info = format_info(view.image.desc().format);
             let (usage, kind, fits) = match slot.kind {
-                BindingKind::StorageImage { format } => {
+                BindingKind::StorageImage { format, .. } => {
                     let fits = info.is_some_and(|info| info.storage == Some(format));
                     (vk::ImageUsageFlags::STORAGE, "storage image", fits)
                 }

@@ -30,7 +30,7 @@ pub(crate) fn format_info(format: vk::Format) -> Option<FormatInfo> {
         F::R32_SFLOAT => (4, Scalar::Float, vk::ImageAspectFlags::COLOR, Some(ImageFormat::R32f)),
         F::R32G32_SFLOAT => (8, Scalar::Float, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rg32f)),
         F::R16G16B16A16_SFLOAT => (8, Scalar::Float, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba16f)),
-        F::R16G16B16A16_UINT => (8, Scalar::Uint, vk::ImageAspectFlags::COLOR, None),
+        F::R16G16B16A16_UINT => (8, Scalar::Uint, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba16ui)),
         F::R32G32B32A32_SFLOAT => (16, Scalar::Float, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba32f)),
         F::R32G32B32A32_SINT => (16, Scalar::Int, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba32i)),
         F::R32G32B32A32_UINT => (16, Scalar::Uint, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba32ui)),

@@ -42,11 +42,9 @@ impl Slot {
         }
     }
 
-    /// True where the stages may write it: no declaration says that an image is only read.
+    /// True where the stages may write it: it is not declared `readonly`.
     pub(super) fn is_written_by(&self, stages: Stages) -> bool {
-        let kind = self.kind;
-        self.stages.contains(stages)
-            && matches!(kind, BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. })
+        self.stages.contains(stages) && self.kind.is_written()
     }
 }
 

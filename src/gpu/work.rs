@@ -166,12 +166,8 @@ impl Declared {
             let is_whole = desc.whole.contains(&slot.name.as_str());
             match slot.kind {
                 BindingKind::Sampler => {}
-                BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. } if is_whole => {
-                    declared.whole.written += bytes;
-                }
-                BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. } => {
-                    declared.bind(resource, Bytes { read: bytes, written: bytes });
-                }
+                kind if kind.is_written() && is_whole => declared.whole.written += bytes,
+                kind if kind.is_written() => declared.bind(resource, Bytes { read: bytes, written: bytes }),
                 _ if is_whole => declared.whole.read += bytes,
                 BindingKind::UniformBuffer => {
                     let block = slot.block_bytes.map_or(bytes, u64::from);

@@ -95,8 +95,20 @@ pub enum BindingKind {
     StorageImage {
         /// Format of a texel, as the shader declares it.
         format: ImageFormat,
+        /// No stage writes it.
+        readonly: bool,
     },
     CombinedImageSampler,
+}
+
+impl BindingKind {
+    /// True where a stage may write it.
+    pub fn is_written(self) -> bool {
+        matches!(
+            self,
+            BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { readonly: false, .. }
+        )
+    }
 }
 
 /// A block of memory shared with the host.

@@ -158,7 +158,9 @@ fn read_binding(variable: &Variable) -> Result<Binding, ReflectError> {
         (DescriptorType::SampledImage(), _) => BindingKind::SampledImage,
         (DescriptorType::Sampler(), _) => BindingKind::Sampler,
         (DescriptorType::CombinedImageSampler(), _) => BindingKind::CombinedImageSampler,
-        (DescriptorType::StorageImage(_), Type::StorageImage(image)) => BindingKind::StorageImage { format: image.fmt },
+        (DescriptorType::StorageImage(access), Type::StorageImage(image)) => {
+            BindingKind::StorageImage { format: image.fmt, readonly: *access == AccessType::ReadOnly }
+        }
         (other, _) => {
             return Err(refuse(&format!(
                 "set {set} binding {binding} is an unsupported {other:?}; use a buffer, texture, sampler or image"

@@ -257,7 +257,9 @@ fn compute_shaders_reflect() {
     assert_eq!(filter.local_size, Some([8, 8, 1]));
     assert!(!filter.lies_in_rows);
     let result = filter.binding(1, 0).unwrap();
-    assert_eq!(result.kind, BindingKind::StorageImage { format: ImageFormat::Rgba32f });
+    assert_eq!(result.kind, BindingKind::StorageImage { format: ImageFormat::Rgba32f, readonly: false });
+    let patches = reflect_embedded("lava/march-free.frag").binding(0, 5).unwrap().kind;
+    assert_eq!(patches, BindingKind::StorageImage { format: ImageFormat::Rgba32f, readonly: true });
 
     let sum = reflect_embedded("test/sum.comp");
     assert_eq!(sum.local_size, Some([64, 1, 1]));

@@ -37,15 +37,16 @@ impl Parameters {
             Simulation::Free => Estimate::default(),
             Simulation::Sph => sph::estimate::estimate(self),
         };
-        let detail = f64::from(self.flow.crust.detail(self).unwrap_or(1));
-        let heights = 4.0 * detail * detail * f64::from(self.density[0]) * f64::from(self.density[2]);
+        let detail = self.flow.crust.detail(self).unwrap_or(1);
+        let cells = |columns: u32| f64::from(detail) * f64::from(columns) + 1.0;
+        let patches = TEXEL * cells(self.density[0]) * cells(self.density[2]);
         let (drawn_bytes, buffers, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
                 let splat_bytes = 8.0 * splats + culling::bytes(self);
                 let fragments = 2.0 * splats * (1.0 + self.splat_pixels().min(pixels));
                 (("splats", splat_bytes), None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
             }
-            SurfaceDraw::March => (("density", heights), Some(("density", heights)), vec![("size", pixels)]),
+            SurfaceDraw::March => (("density", patches), None, vec![("size", pixels)]),
         };
         Estimate {
             bytes: first_stages.bytes.into_iter().chain(bytes).chain([drawn_bytes]).chain(flow.bytes).collect(),

@@ -10,8 +10,8 @@ use super::highest_rows::highest_rows;
 use super::parameters::Parameters;
 use super::rays::{RayConstants, rays};
 use super::scene::Scene;
-use super::targets::{Context, FAR, ZERO};
-use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Pass};
+use super::targets::{Context, FAR, FLOATS, ZERO};
+use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Pass};
 use crate::host_block;
 
 host_block! {
@@ -44,15 +44,16 @@ impl March {
         let (columns, rows) = (scene.normal_height.width(), scene.normal_height.height());
         let desc = BufferDesc::new(context.name("highest"), 4 * (1 + u64::from(rows)));
         let found = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let desc = BufferDesc::new(context.name("heights"), 4 * u64::from(columns) * u64::from(rows));
-        let heights = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
-            .map_err(|error| error.set_by("density"))?;
+        let desc = ImageDesc::new_2d(context.name("patches"), FLOATS, columns + 1, rows + 1);
+        let patches = Image::new(context.device(), desc.usage(vk::ImageUsageFlags::STORAGE))
+            .map_err(|error| error.set_by("density"))?
+            .view()?;
         let march = scene
             .hot(|shader| Pass::graphics("march", "", "common/fullscreen.vert", shader), "lava/march")
             .constants::<RayConstants>()
             .with("scene", &scene.block)
             .with("highest", &found)
-            .with("heights", &heights)
+            .with("patches", &patches)
             .with("normal_height", &scene.normal_height)
             .with("rock", &scene.rock)
             .with("linear", &scene.linear)
@@ -62,7 +63,7 @@ impl March {
             .build(context.shaders)?;
         let field = FieldConstants { columns, rows };
         Ok(March {
-            highest_rows: highest_rows(context, scene, &found, &heights)?,
+            highest_rows: highest_rows(context, scene, &found, &patches)?,
             highest: highest(context.shaders, &found)?,
             field,
             march,
@@ -80,7 +81,9 @@ impl March {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
-        frame.compute(&self.highest_rows, |dispatch| dispatch.constants(&self.field).threads(self.field.rows, 1, 1))?;
+        frame.compute(&self.highest_rows, |dispatch| {
+            dispatch.constants(&self.field).threads(self.field.rows + 1, 1, 1)
+        })?;
         frame.compute(&self.highest, |dispatch| dispatch.constants(&self.field).threads(1, 1, 1))?;
         frame.graphics(&self.march, |draw| draw.constants(&self.rays.drifted(drift_m)).vertices(3))
     }

@@ -6,6 +6,7 @@ use super::geometric_transformation::SceneView;
 use super::height_field::HeightField;
 use super::hit::Hit;
 use super::host::{HostPass, PixelWork};
+use super::levels::Levels;
 use super::parameters::Parameters;
 use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
@@ -24,7 +25,8 @@ impl DeviceDepth {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(build: &Build<'_>, scene: &DeviceScene, starts: &Starts) -> Result<Self, Error> {
-        let program = format!("{}-{}", build.ray_program("depth"), build.parameters.lod.name());
+        let lod = build.parameters.lod.name();
+        let program = |levels: &Levels| format!("{}-{lod}", build.ray_program("depth", levels));
         let first = build.image("depth", VECTOR)?;
         let second = if scene.maps.len() > 1 { build.image("depth", VECTOR)? } else { first.clone() };
         let start = |map| starts.of_map(map).map(|start| ("starts", start.into())).into_iter().collect();

@@ -10,8 +10,8 @@ fn the_buffers_hold_what_the_shaders_read() {
         "depth-curved-bicubic-exact",
         "shadow-curved-bilinear",
         "normal-bicubic",
-        "depth-dda-plane-packed-exact",
-        "start-packed",
+        "depth-dda-plane-packed16-exact",
+        "start-packed32",
     ] {
         for stage in ["comp", "frag"] {
             check_block::<TerrainBlock>(&format!("terrain/{program}.{stage}"), "terrain");

@@ -103,7 +103,7 @@ impl Packed {
         };
         let mut recorder = Recorder::new(shaders.device())?;
         let mut draw = |name: &'static str, format, (width, height)| {
-            let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
+            let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, width, height).usage(usage);
             let target = Image::new(shaders.device(), desc)?.view()?;
             let pass = Pass::graphics(name, "3", "common/fullscreen.vert", &format!("terrain/{name}.frag"))

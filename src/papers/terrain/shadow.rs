@@ -9,6 +9,7 @@ use super::geometric_transformation::SceneView;
 use super::height_field::HeightField;
 use super::hit::{Hit, Surface};
 use super::host::{HostPass, PixelWork};
+use super::levels::Levels;
 use super::parameters::Parameters;
 use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
@@ -41,7 +42,7 @@ pub fn shadow(
     scene: &DeviceScene,
     depth: &Arc<ImageView>,
 ) -> Result<PixelPass, Error> {
-    let program = build.ray_program("shadow");
+    let program = |levels: &Levels| build.ray_program("shadow", levels);
     let first = build.image(&format!("{name}-0"), FORMAT)?;
     let second = if scene.maps.len() > 1 { build.image(&format!("{name}-1"), FORMAT)? } else { first.clone() };
     let prior = all_lit(build, &format!("/{name}"))?;

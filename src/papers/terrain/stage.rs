@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
 use super::pyramid::Cover;
 use super::scene::DeviceScene;
@@ -75,9 +76,9 @@ impl Build<'_> {
         self.traversal.cover(self.parameters.interpolation)
     }
 
-    /// The name of the program of `pass` that casts rays, before what it is made of beside base and interpolation.
-    pub fn ray_program(&self, pass: &str) -> String {
-        let (base, surface) = (self.parameters.base.kind(), self.surface());
+    /// The name of the program of `pass` that casts rays at a map, before what it is made of beside base and interpolation.
+    pub fn ray_program(&self, pass: &str, levels: &Levels) -> String {
+        let (base, surface) = (self.parameters.base.kind(), self.surface(levels));
         match self.traversal {
             Traversal::Halving => format!("{pass}-{base}-{surface}"),
             Traversal::Cells => format!("{pass}-dda-{base}-{surface}"),
@@ -85,9 +86,13 @@ impl Build<'_> {
         }
     }
 
-    /// The surface between the samples as the shaders of rays call it.
-    pub fn surface(&self) -> &'static str {
-        if self.is_packed { "packed" } else { self.parameters.interpolation.name() }
+    /// The surface between a map's samples as the shaders of rays call it.
+    pub fn surface(&self, levels: &Levels) -> &'static str {
+        match (&levels.packed, levels.is_float) {
+            (None, _) => self.parameters.interpolation.name(),
+            (Some(_), false) => "packed16",
+            (Some(_), true) => "packed32",
+        }
     }
 
     fn image_of(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<ImageView>, Error> {
@@ -151,7 +156,7 @@ impl Build<'_> {
     pub fn map_passes(
         &self,
         name: (&'static str, &'static str),
-        program: &str,
+        program: &dyn Fn(&Levels) -> String,
         ping_pong: [&Arc<ImageView>; 2],
         scene: &DeviceScene,
         mut prior: Arc<ImageView>,
@@ -161,7 +166,7 @@ impl Build<'_> {
         for ((index, map), target) in scene.maps.iter().enumerate().zip(ping_pong.into_iter().cycle()) {
             let own = [("terrain", (&map.terrain).into()), ("prior", (&prior).into())];
             let resources = [&own[..], &map.levels.ray_resources(), &others(index)].concat();
-            passes.push(self.pass(name, program, (target, Load::Discard), &resources)?);
+            passes.push(self.pass(name, &program(&map.levels), (target, Load::Discard), &resources)?);
             prior = target.clone();
         }
         Ok(PixelPass { stage: self.stage, passes, target: prior })

@@ -38,11 +38,11 @@ impl Starts {
             let nothing = texels(build.shaders.device(), &name, FORMAT, (1, 1), |_, bytes| bytes.fill(0))?;
             return Ok(Starts { passes: Vec::new(), nothing: Some(nothing) });
         }
-        let program = format!("start-{}", build.surface());
         let of_map = |(index, map): (usize, &Map)| {
             let target = tiles(build, index)?;
             let own = [("terrain", (&map.terrain).into())];
             let resources = [&own[..], &map.levels.ray_resources()].concat();
+            let program = format!("start-{}", build.surface(&map.levels));
             let pass = build.pass(("start", "3"), &program, (&target, Load::Discard), &resources)?;
             Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
         };

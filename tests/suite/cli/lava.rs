@@ -193,7 +193,7 @@ fn readbacks_are_set_against_none() {
     for run in runs {
         // Nothing is made for the other way of drawing.
         let resources = run["memory"]["by_resource"].as_array().unwrap();
-        for (name, drawing) in [("splats", &splats), ("heights", &march)] {
+        for (name, drawing) in [("splats", &splats), ("patches", &march)] {
             let is_made = resources.iter().any(|resource| resource["name"] == name);
             assert_eq!(is_made, run["config"]["surface_draw"] == *drawing, "{name}: {resources:?}");
         }

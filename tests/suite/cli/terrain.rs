@@ -282,7 +282,7 @@ fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
             let passes = variant["passes"].as_array().unwrap();
             let depth = passes.iter().find(|pass| pass["name"] == "depth").unwrap();
             assert_eq!(depth["kind"], kind);
-            let shader = format!("depth-dda-{kind_of_base}-packed-pixel");
+            let shader = format!("depth-dda-{kind_of_base}-packed16-pixel");
             assert!(depth["shaders"].to_string().contains(&shader), "{depth}");
         }
         for options in ["--corners image", "--corners auto --interpolation bicubic"] {

@@ -10,7 +10,7 @@ use fumarole::papers::lava::{
 };
 use glam::{DVec2, DVec3, Vec3};
 
-use super::fluid::{flowing, list, vectors};
+use super::fluid::{by_cells, flowing, list, vectors};
 use super::scene::{draw, shaders, texels};
 use crate::common::gpu_test;
 
@@ -67,7 +67,7 @@ fn surface_motion_is_that_of_the_particles_around_it() {
         let parameters = crusted(Crust { pieces: 1.5, ..Crust::default() });
         let lava = drawn(device, &parameters);
         let sph = lava.animate.sph().unwrap();
-        let [xs, ys, zs] = sph.sort.places.each_ref().map(|axis| list::<f32>(device, axis));
+        let began = by_cells(device, &sph.sort.places, parameters.particles as usize);
         let arrived = vectors(device, sph.arrived());
         let heat: Vec<[f32; 2]> = list(device, &sph.heat);
         let relief = lava.relief.as_ref().unwrap();
@@ -85,8 +85,7 @@ fn surface_motion_is_that_of_the_particles_around_it() {
                 let inside = (1.0 - DVec2::new(apart.x, apart.z).length() / support).max(0.0);
                 let near = inside.powi(4) * (5.0 - 4.0 * inside);
                 let weight = near * 0.5f64.powf(4.8 * apart.y.abs() / support);
-                let began = Vec3::new(xs[i], ys[i], zs[i]).as_dvec3();
-                way += weight * DVec2::new(place.x - began.x, place.z - began.z);
+                way += weight * DVec2::new(place.x - began[i].x, place.z - began[i].z);
                 weights += weight;
                 columns += near;
                 warmth += near * f64::from(heat[i][0]);

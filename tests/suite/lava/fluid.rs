@@ -108,8 +108,7 @@ pub(super) fn hold_passes(device: &Arc<Device>, parameters: &Parameters, particl
     let mut animate = animate(device, parameters, particles);
     run(device, &mut animate, 7);
     let sph = animate.sph().unwrap();
-    let [xs, ys, zs] = sph.sort.places.each_ref().map(|axis| list::<f32>(device, axis));
-    let began: Vec<_> = (0..xs.len()).map(|i| Vec3::new(xs[i], ys[i], zs[i]).as_dvec3()).collect();
+    let began = by_cells(device, &sph.sort.places, parameters.particles as usize);
     // Viscosity: a thousandth of the first guess's residual is left.
     let before = vectors(device, &sph.pushed);
     let after = by_cells(device, &sph.velocities[sph.iterations() % 2], began.len());

@@ -82,7 +82,7 @@ fn particles_are_sorted_by_cells_and_the_sort_is_stable() {
             draw(device, &mut lava, 3);
             let sort = &method(&lava).sort;
             let starts: Vec<u32> = words(device, &sort.starts);
-            let [xs, ys, zs] = sort.places.each_ref().map(|axis| words::<f32>(device, axis));
+            let sorted: Vec<[f32; 4]> = texels(device, &sort.places);
             let cells = Cells::new(&parameters, parameters.particles);
             assert_eq!(starts.len(), cells.count() as usize + 1);
             assert_eq!((starts[0], starts[starts.len() - 1]), (0, parameters.particles));
@@ -95,8 +95,8 @@ fn particles_are_sorted_by_cells_and_the_sort_is_stable() {
                 let (y, column) = (cell as u32 % cells.counts[1], cell as u32 / cells.counts[1]);
                 let at = Vec3::new((column % cells.counts[0]) as f32, y as f32, (column / cells.counts[0]) as f32);
                 let mut before = None;
-                for i in ends[0] as usize..ends[1] as usize {
-                    let place = Vec3::new(xs[i], ys[i], zs[i]);
+                for &[x, y, z, _] in &sorted[ends[0] as usize..ends[1] as usize] {
+                    let place = Vec3::new(x, y, z);
                     let inside = place / parameters.space_m * Vec3::from(cells.counts.map(|n| n as f32)) - at;
                     let is_inside = inside.cmpge(Vec3::splat(-1e-4)).all() && inside.cmple(Vec3::splat(1.0001)).all();
                     assert!(is_inside, "{place} in cell {cell}");

@@ -80,8 +80,7 @@ fn heat_and_rheology_do_what_their_equations_say() {
             let mut animate = animate(device, &parameters, &particles);
             run(device, &mut animate, 7);
             let sph = animate.sph().unwrap();
-            let [xs, ys, zs] = sph.sort.places.each_ref().map(|axis| list::<f32>(device, axis));
-            let began: Vec<_> = (0..xs.len()).map(|i| Vec3::new(xs[i], ys[i], zs[i]).as_dvec3()).collect();
+            let began = by_cells(device, &sph.sort.places, parameters.particles as usize);
             let pushed: Vec<[f32; 4]> = list(device, &sph.pushed);
             let kelvin: Vec<f64> = pushed.iter().map(|p| f64::from(p[3])).collect();
             let heat: Vec<[f32; 2]> = list(device, &sph.heat);

@@ -50,13 +50,10 @@ impl GatheredDensity {
         let parameters = context.parameters;
         let clusters = parameters.clusters();
         let density = Image::new(context.device(), context.stored_desc("density").layers(clusters))?.view()?;
-        let [xs, ys, zs] = &sort.places;
         let pass = Pass::compute("density", "6.1", "lava/density.comp")
             .constants::<GatherConstants>()
             .with("starts", &sort.starts)
-            .with("xs", xs)
-            .with("ys", ys)
-            .with("zs", zs)
+            .with("places_by_cells", &sort.places)
             .with("reached", &sort.reached)
             .with("density", &density)
             .build(context.shaders)?;

@@ -11,6 +11,7 @@
 //! gathers those sums, where the thesis draws a splat for each accepted point.
 
 mod accumulate_depths;
+pub mod by_cells;
 mod cells;
 mod density;
 mod estimate;

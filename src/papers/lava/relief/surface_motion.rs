@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::super::sph::{Sph, over_cells};
+use super::super::sph::{Sph, over_places};
 use super::super::targets::Context;
 use crate::gpu::{Error, ImageView, Pass};
 
@@ -16,7 +16,7 @@ pub fn surface_motion(
     surface: &Arc<ImageView>,
     motion: &Arc<ImageView>,
 ) -> Result<Pass, Error> {
-    over_cells("surface-motion", "lava/surface-motion.comp", &sph.sort)
+    over_places("surface-motion", "lava/surface-motion.comp", &sph.sort)
         .with("predicted", sph.arrived())
         .with("heat", &sph.heat)
         .with("normal_height", surface)

@@ -68,8 +68,8 @@ use self::sph_viscosity::sph_viscosity;
 use self::vent::Inflow;
 use self::work::{MOST_PASSES, OTHER_PASSES, Work};
 use super::animate::State;
-use super::gpu_driven::Cells;
 use super::gpu_driven::sort::Sort;
+use super::gpu_driven::{Cells, by_cells};
 use super::parameters::Parameters;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
@@ -188,10 +188,10 @@ impl Sph {
             let desc = BufferDesc::new(context.name(name), bytes * u64::from(particle_count)).usage(usage);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
         };
-        let texture = |name: &str| neighbours::texture(context, name, particle_count, 1);
+        let texture = |name: &str| by_cells::texture(context, name, particle_count);
         let velocities = [texture("velocities-by-cells-a")?, texture("velocities-by-cells-b")?];
         let predicted = [texture("predicted-a")?, texture("predicted-b")?];
-        let (began, pushing, arrived) = (texture("began")?, texture("pushing")?, buffer("arrived", 16)?);
+        let (pushing, arrived) = (texture("pushing")?, buffer("arrived", 16)?);
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
         let wall_drags = buffer("wall-drags", 4)?;
         let unmet = context.upload("unmet", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 3]))?;
@@ -200,14 +200,14 @@ impl Sph {
         let by_particles =
             upload_each(context.device(), &context.name("lasting"), usage, particle_count as usize, |_| [0.0f32; 4])
                 .map_err(|error| error.set_by("particles"))?;
-        let near = Neighbours::new(context, &sort, particle_count, [&began, &predicted[0]])?;
+        let near = Neighbours::new(context, &sort, particle_count, &predicted[0])?;
         let heat = buffer("heat", 8)?;
         let latent = parameters.flow.heat.crystallising_k();
         let latent = context.upload("latent", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&latent))?;
 
         let is_level = bed.is_level();
         let bed = bed.texture(context)?;
-        let ground = Ground { sort: &sort, near: &near, began: &began, bed: &bed };
+        let ground = Ground { sort: &sort, near: &near, bed: &bed };
         let coefficients = chebyshev::coefficients(scale.stiffness * scale.stiffest);
         let rheology = match parameters.flow.heat.rheology {
             Rheology::Constant => None,
@@ -225,7 +225,7 @@ impl Sph {
         let size = (width, states[0].positions.height());
         let rock = Rock::new(context, size, buffer("carried", 16)?, renewal_steps)?;
         let inflow = |state: usize| sph_inflow(shaders, states[2], states[state], &rock.states[state], &by_particles);
-        let forces = |state| sph_forces(shaders, &sort, state, [&velocities[0], &began], &by_particles, viscous);
+        let forces = |state| sph_forces(shaders, &sort, state, &velocities[0], &by_particles, viscous);
         let viscosities = rheology.as_ref().map(|rheology| &rheology.viscosities);
         let viscosity = |[from, to]: [usize; 2]| {
             sph_viscosity(shaders, ground, [&velocities[from], &velocities[to]], viscous, viscosities)
@@ -409,13 +409,12 @@ struct Viscous<'a> {
 
 /// Begins a pass over the particles by cells.
 pub(super) fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
-    let [xs, ys, zs] = &sort.places;
-    Pass::compute(name, "9", shader)
-        .constants::<FlowConstants>()
-        .with("starts", &sort.starts)
-        .with("xs", xs)
-        .with("ys", ys)
-        .with("zs", zs)
+    Pass::compute(name, "9", shader).constants::<FlowConstants>().with("starts", &sort.starts)
+}
+
+/// And asks for their places as the step begins.
+pub(super) fn over_places(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
+    over_cells(name, shader, sort).with("places_by_cells", &sort.places)
 }
 
 /// The particles by cells, and the ground under them.
@@ -423,25 +422,18 @@ pub(super) fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassB
 struct Ground<'a> {
     sort: &'a Sort,
     near: &'a Neighbours,
-    /// Their places as the step begins.
-    began: &'a Arc<ImageView>,
     bed: &'a Arc<ImageView>,
 }
 
 impl Ground<'_> {
     /// Begins a pass over the particles that feels the walls.
-    fn over_cells(self, name: &'static str, shader: &str) -> PassBuilder {
-        over_cells(name, shader, self.sort).with("bed", self.bed)
+    fn over_places(self, name: &'static str, shader: &str) -> PassBuilder {
+        over_places(name, shader, self.sort).with("bed", self.bed)
     }
 
     /// And looks at those near each of them.
     fn over_neighbours(self, name: &'static str, shader: &str) -> PassBuilder {
         self.near.over(name, shader, self.sort).with("bed", self.bed)
-    }
-
-    /// At their places as the step begins.
-    fn over_near_places(self, name: &'static str, shader: &str) -> PassBuilder {
-        self.over_neighbours(name, shader).with("began", self.began)
     }
 }
 

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::super::estimate::TEXEL;
+use super::super::gpu_driven::by_cells::{ROW, texture_of_rows};
 use super::super::gpu_driven::sort::Sort;
-use super::super::targets::{Context, FLOATS};
-use super::over_cells;
+use super::super::targets::Context;
+use super::over_places;
 use super::sph_neighbours::sph_neighbours;
 use super::sph_neighbours_predicted::sph_neighbours_predicted;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
-use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Pass};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, ImageView, Pass};
 
 /// Particles of a list, as in `lava/sph.glsl`.
 const LISTED: u32 = 96;
@@ -20,12 +21,10 @@ const LISTED: u32 = 96;
 pub const MOST_IN_COLUMN: u32 = 7200;
 /// Of a stretch through the whole height at most, for the crust's relief, as in `lava/crust-relief.comp`.
 const MOST_OF_RELIEF: u32 = MOST_IN_COLUMN / 4;
-/// Particles in a row of a texture by cells, as there, and rows that every device has.
-const ROW: u32 = 1 << 12;
-/// Texels of a list.
-const FOURS: u32 = LISTED / 4;
+/// Lists in a row of their textures, in eights that lie side by side, as there.
+const LISTS_OF_ROW: u32 = ROW / (8 * LISTED / 4) * 8;
 /// Particles with a list: as many lists as every device takes in one texture. All others look at the cells around them.
-const MOST_LISTS: u32 = ROW / FOURS * ROW;
+const MOST_LISTS: u32 = LISTS_OF_ROW * ROW; // every device has as many rows
 
 /// The lists, made twice in a step.
 pub struct Neighbours {
@@ -46,19 +45,10 @@ pub fn listed(particles: u32) -> u32 {
     particles.min(MOST_LISTS)
 }
 
-/// Bytes of so many particles' lists and drags, and of the six textures by cells.
+/// Bytes of so many particles' lists and drags, and of the five textures by cells.
 pub fn bytes(particles: u32) -> f64 {
-    let rows = |particles: u32| TEXEL * f64::from(ROW) * f64::from(particles.div_ceil(ROW));
-    2.0 * f64::from(FOURS) * rows(listed(particles)) + 6.0 * rows(particles) + 4.0 * f64::from(particles)
-}
-
-/// A texture by cells, with so many texels for each particle.
-///
-/// # Errors
-/// Errors of the Vulkan layer.
-pub fn texture(context: Context<'_>, name: &str, particles: u32, texels: u32) -> Result<Arc<ImageView>, Error> {
-    let desc = ImageDesc::new_2d(context.name(name), FLOATS, ROW, texels * particles.div_ceil(ROW));
-    Image::new(context.device(), desc.usage(vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED))?.view()
+    let rows = 2 * listed(particles).div_ceil(LISTS_OF_ROW) + 5 * particles.div_ceil(ROW);
+    TEXEL * f64::from(ROW) * f64::from(rows) + 4.0 * f64::from(particles)
 }
 
 /// Particles that a pass looks at, for so many, where each that has no list looks at some.
@@ -68,25 +58,21 @@ pub fn looked_at(particles: u32, walked: f64) -> f64 {
 }
 
 impl Neighbours {
-    /// Of particles in this order, at places as the step begins and as they are predicted.
+    /// Of particles in this order, and at `predicted` places.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(
-        context: Context<'_>,
-        sort: &Sort,
-        particles: u32,
-        [began, predicted]: [&Arc<ImageView>; 2],
-    ) -> Result<Self, Error> {
-        let lists = texture(context, "neighbours", listed(particles), FOURS)?;
-        let drags = texture(context, "drags", listed(particles), FOURS)?;
+    pub fn new(context: Context<'_>, sort: &Sort, particles: u32, predicted: &Arc<ImageView>) -> Result<Self, Error> {
+        let rows = listed(particles).div_ceil(LISTS_OF_ROW);
+        let lists = texture_of_rows(context, "neighbours", rows)?;
+        let drags = texture_of_rows(context, "drags", rows)?;
         let desc = BufferDesc::new(context.name("neighbour-counts"), 4 * u64::from(particles));
         let counts = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
             .map_err(|error| error.set_by("particles"))?;
         let crowded =
             context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&[0u32; 4]))?;
         Ok(Neighbours {
-            began: sph_neighbours(context.shaders, sort, (&lists, &counts), began, &crowded)?,
+            began: sph_neighbours(context.shaders, sort, (&lists, &counts), &crowded)?,
             predicted: sph_neighbours_predicted(context.shaders, sort, (&lists, &counts), predicted)?,
             lists,
             counts,
@@ -97,7 +83,7 @@ impl Neighbours {
 
     /// Begins a pass that looks at the particles near each.
     pub fn over(&self, name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
-        over_cells(name, shader, sort).with("neighbours", &self.lists).with("neighbour_counts", &self.counts)
+        over_places(name, shader, sort).with("neighbours", &self.lists).with("neighbour_counts", &self.counts)
     }
 
     /// Fails where particles that count were left out, since a device would end the loops over them.

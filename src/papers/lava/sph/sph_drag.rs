@@ -21,7 +21,7 @@ pub fn sph_drag(
         Some(_) => "lava/sph-drag-basalt.comp",
     };
     let pass =
-        ground.over_near_places("sph-drag", shader).with("drags", &ground.near.drags).with("wall_drags", wall_drags);
+        ground.over_neighbours("sph-drag", shader).with("drags", &ground.near.drags).with("wall_drags", wall_drags);
     match viscosities {
         None => pass.build(shaders),
         Some(viscosities) => pass.with("viscosities", viscosities).build(shaders),

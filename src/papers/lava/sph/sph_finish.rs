@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{Lasting, Rock, over_cells};
+use super::{Lasting, Rock, over_places};
 use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
@@ -22,7 +22,7 @@ pub fn sph_finish(
     state: &State,
     (rock, [from, to]): (&Rock, [usize; 2]),
 ) -> Result<Pass, Error> {
-    over_cells("sph-finish", "lava/sph-finish.comp", sort)
+    over_places("sph-finish", "lava/sph-finish.comp", sort)
         .with("predicted", predicted)
         .with("arrived", arrived)
         .with("items", &sort.items)

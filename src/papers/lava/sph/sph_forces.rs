@@ -9,7 +9,7 @@ use crate::papers::lava::animate::State;
 use crate::papers::lava::gpu_driven::sort::Sort;
 
 /// Makes the pass from a state and what is `lasting` of the step before; `pushed` and `velocities` take the velocities,
-/// `began` the places, `change` is set to none, and `unmet` says that iterations have begun.
+/// `change` is set to none, and `unmet` says that iterations have begun.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -17,7 +17,7 @@ pub fn sph_forces(
     shaders: &ShaderLibrary,
     sort: &Sort,
     state: &State,
-    [velocities, began]: [&Arc<ImageView>; 2],
+    velocities: &Arc<ImageView>,
     lasting: &Arc<Buffer>,
     Viscous { pushed, change, unmet, .. }: Viscous<'_>,
 ) -> Result<Pass, Error> {
@@ -27,7 +27,6 @@ pub fn sph_forces(
         .with("pushed", pushed)
         .with("to", velocities)
         .with("change", change)
-        .with("began", began)
         .with("lasting", lasting)
         .with("unmet", unmet)
         .build(shaders)

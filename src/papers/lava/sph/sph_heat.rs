@@ -17,7 +17,7 @@ pub fn sph_heat(
     heat: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
-        .over_near_places("sph-heat", "lava/sph-heat.comp")
+        .over_neighbours("sph-heat", "lava/sph-heat.comp")
         .with("pushed", pushed)
         .with("heat", heat)
         .with("latent", latent)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::over_places;
 use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
@@ -14,13 +14,11 @@ pub fn sph_neighbours(
     shaders: &ShaderLibrary,
     sort: &Sort,
     (lists, counts): (&Arc<ImageView>, &Arc<Buffer>),
-    began: &Arc<ImageView>,
     crowded: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-neighbours", "lava/sph-neighbours-began.comp", sort)
+    over_places("sph-neighbours", "lava/sph-neighbours-began.comp", sort)
         .with("neighbours", lists)
         .with("neighbour_counts", counts)
-        .with("places", began)
         .with("crowded", crowded)
         .build(shaders)
 }

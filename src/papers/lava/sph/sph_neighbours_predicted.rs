@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::over_cells;
+use super::over_places;
 use crate::gpu::{Buffer, Error, ImageView, Pass, ShaderLibrary};
 use crate::papers::lava::gpu_driven::sort::Sort;
 
@@ -17,9 +17,9 @@ pub fn sph_neighbours_predicted(
     (lists, counts): (&Arc<ImageView>, &Arc<Buffer>),
     predicted: &Arc<ImageView>,
 ) -> Result<Pass, Error> {
-    over_cells("sph-neighbours-predicted", "lava/sph-neighbours-predicted.comp", sort)
+    over_places("sph-neighbours-predicted", "lava/sph-neighbours-predicted.comp", sort)
         .with("neighbours", lists)
         .with("neighbour_counts", counts)
-        .with("places", predicted)
+        .with("predicted", predicted)
         .build(shaders)
 }

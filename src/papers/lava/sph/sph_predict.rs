@@ -16,7 +16,7 @@ pub fn sph_predict(
     unmet: &Arc<Buffer>,
 ) -> Result<Pass, Error> {
     ground
-        .over_cells("sph-predict", "lava/sph-predict.comp")
+        .over_places("sph-predict", "lava/sph-predict.comp")
         .with("from", velocities)
         .with("predicted", predicted)
         .with("unmet", unmet)

@@ -19,7 +19,6 @@ pub fn sph_rheology(
     ground
         .near
         .over("sph-rheology", "lava/sph-rheology.comp", ground.sort)
-        .with("began", ground.began)
         .with("along", along)
         .with("across", across)
         .with("heat", heat)

@@ -16,7 +16,7 @@ pub fn sph_strain(
     [along, across]: [&Arc<Buffer>; 2],
 ) -> Result<Pass, Error> {
     ground
-        .over_near_places("sph-strain", "lava/sph-strain.comp")
+        .over_neighbours("sph-strain", "lava/sph-strain.comp")
         .with("pushed", pushed)
         .with("along", along)
         .with("across", across)

@@ -24,7 +24,6 @@ pub fn sph_viscosity(
     let pass = ground
         .near
         .over("sph-viscosity", shader, ground.sort)
-        .with("began", ground.began)
         .with("drags", &ground.near.drags)
         .with("wall_drags", viscous.wall_drags)
         .with("pushed", viscous.pushed)

@@ -36,13 +36,9 @@ impl SurfaceTemperature {
         let Parameters { particles, flow, .. } = context.parameters;
         let radiance = flow.heat.crust_radiance(flow.spacing_m(*particles)) as f32;
         let face = context.upload("face", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&radiance))?;
-        let [xs, ys, zs] = &sph.sort.places;
         let pass = Pass::compute("surface-temperature", "9", "lava/surface-temperature.comp")
             .constants::<FlowConstants>()
             .with("starts", &sph.sort.starts)
-            .with("xs", xs)
-            .with("ys", ys)
-            .with("zs", zs)
             .with("predicted", sph.arrived())
             .with("heat", &sph.heat)
             .with("normal_height", surface)

@@ -7,8 +7,8 @@ use super::{CellConstants, of_each};
 use crate::gpu::{Buffer, Error, ImageView, Pass};
 use crate::papers::lava::targets::Context;
 
-/// Makes the pass on each texture of positions; `places` takes x, y and z of each sorted item, metres, `reached` a word for
-/// each piece.
+/// Makes the pass on each texture of positions; `places` takes the place of each sorted item, metres, `reached` a word for each
+/// piece.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -16,16 +16,14 @@ pub fn arrange(
     context: Context<'_>,
     positions: &[&Arc<ImageView>],
     sorted: &Arc<Buffer>,
-    [xs, ys, zs]: &[Arc<Buffer>; 3],
+    places: &Arc<ImageView>,
     reached: &Arc<Buffer>,
 ) -> Result<Vec<Pass>, Error> {
     let first = Pass::compute("arrange", "5.2", "lava/arrange.comp")
         .constants::<CellConstants>()
         .with("positions", positions[0])
         .with("items", sorted)
-        .with("xs", xs)
-        .with("ys", ys)
-        .with("zs", zs)
+        .with("places_by_cells", places)
         .with("reached", reached);
     of_each(first, positions, context)
 }

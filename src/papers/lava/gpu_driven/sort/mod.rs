@@ -18,7 +18,9 @@ use self::cell_starts::cell_starts;
 use self::sort_count::sort_count;
 use self::sort_scatter::sort_scatter;
 use self::sort_sum::sort_sum;
+use super::super::estimate::TEXEL;
 use super::super::targets::Context;
+use super::by_cells;
 use super::cells::Cells;
 use super::density;
 use crate::gpu::pass::PassBuilder;
@@ -73,8 +75,8 @@ pub struct Sort {
     cell_count: u32,
     /// Cell and number of each particle by cells.
     pub items: Arc<Buffer>,
-    /// Places along x, y and z by cells, metres.
-    pub places: [Arc<Buffer>; 3],
+    /// Places by cells, metres.
+    pub places: Arc<ImageView>,
     /// The first particle of each cell, and the end of the last.
     pub starts: Arc<Buffer>,
     /// A word for each piece of `density`.
@@ -105,10 +107,11 @@ impl Counts {
     }
 }
 
-/// Bytes of all buffers of the sort.
+/// Bytes of all that the sort has.
 pub fn bytes(cells: &Cells) -> f64 {
     let words = f64::from(Counts::of(cells.particles).third_sum) + 1.0;
-    28.0 * f64::from(cells.particles) + 4.0 * words + 4.0 * (f64::from(cells.count()) + 1.0)
+    let places = TEXEL * f64::from(by_cells::ROW) * f64::from(cells.particles.div_ceil(by_cells::ROW));
+    16.0 * f64::from(cells.particles) + places + 4.0 * words + 4.0 * (f64::from(cells.count()) + 1.0)
 }
 
 impl Sort {
@@ -126,7 +129,7 @@ impl Sort {
         };
         let items = [buffer("items-a", 2 * particles)?, buffer("items-b", 2 * particles)?];
         let counts = buffer("sort-counts", Counts::of(particles).third_sum + 1)?;
-        let places = [buffer("sorted-x", particles)?, buffer("sorted-y", particles)?, buffer("sorted-z", particles)?];
+        let places = by_cells::texture(context, "places-by-cells", particles)?;
         let starts = buffer("cell-starts", cells.count() + 1)?;
         let pieces = density::pieces(particles);
         let reached = buffer("reached-pieces", pieces)?;
