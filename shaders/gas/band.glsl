@@ -12,6 +12,8 @@ layout(push_constant, std430) uniform Band {
     uint picture_row; // the first row of the first band
     uint end_list_row; // the row after the last one of the band
     uint rest; // 1 for pixels that are not of the lattice, see lattice.glsl
+    uint part; // of `volume`, see gas-pixels.glsl
+    uint part_bits; // of their number, a power of two
 } band;
 
 // The list of a pixel.

@@ -8,6 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/band.glsl"
 #include "gas/counters.glsl"
+#include "gas/gas-pixels.glsl"
 
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
@@ -30,5 +31,9 @@ void main() {
         section_count = 0u;
         most_lost_pixels = max(most_lost_pixels, lost_pixels);
         lost_pixels *= is_later;
+        gas_groups[0] = 0u;
+        gas_groups[1] = 1u;
+        gas_groups[2] = 1u;
+        gas_pixel_count = 0u;
     }
 }

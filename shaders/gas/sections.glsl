@@ -2,7 +2,13 @@
 // every fragment and at every entry and exit of a volume (figure 1). What the march finds of a section becomes a fragment with
 // a full mask at its depth in the pixel's list.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 36, std430) readonly buffer GasPixels {
+    uint gas_groups[3];
+    uint gas_pixel_count;
+    uint gas_pixels[]; // see gas-pixels.glsl
+};
 
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
@@ -34,14 +40,16 @@ void set_next(uint list, uint node, uint next) {
 
 void main() {
     read_scene();
-    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
-    if (!is_in_band(pixel)) {
+    uint listed = 64u * (band.part * gl_NumWorkGroups.x + gl_WorkGroupID.x) + gl_LocalInvocationID.x;
+    if (listed >= gas_pixel_count) {
         return;
     }
+    uint words = gas_pixels[listed];
+    uvec2 pixel = uvec2(words & 0xffffu, words >> 16u);
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     uint list = list_of(pixel);
     Pixel reserved = pixel_of_words(pixels[list]);
-    if (reserved.section_count == 0u || !is_turn_of(pixel) || !is_due(VOLUME, list)) {
+    if (!is_turn_of(pixel) || !is_due(VOLUME, list)) {
         return;
     }
     bool is_lent = !is_on_lattice(pixel);

@@ -5,7 +5,7 @@
 // Each pixel's list by mean depth ("average z value"), then object, then triangle: runs of up to eight in registers, which are
 // merged, for any length. The extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments
 // cover the pixel. The sections that `volume` will make are counted and their slots reserved, so that `volume` needs no
-// atomics.
+// atomics, and pixels that have some are listed for it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,6 +16,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/volumes-{COUNT}.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
+#include "gas/gas-pixels.glsl"
 
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
@@ -183,6 +184,15 @@ uint count_between(Run run, vec2 extent) {
     return counts.x + counts.y + counts.z + counts.w;
 }
 
+// Each slot is given once: the first of as many groups as there are parts asks for one more of each part.
+void add_gas_pixel(uvec2 pixel) {
+    uint slot = atomicAdd(gas_pixel_count, 1u);
+    gas_pixels[slot] = pixel.x | (pixel.y << 16u);
+    if ((slot & ((64u << band.part_bits) - 1u)) == 0u) {
+        atomicMax(gas_groups[0], (slot >> (6u + band.part_bits)) + 1u);
+    }
+}
+
 const uint MERGING = 0u;
 const uint COVERING = 1u; // the end of the tracing is looked for
 const uint COUNTING = 2u; // of the sections
@@ -332,6 +342,9 @@ void main() {
         }
     }
     pixels[at] = uvec4(first, wanted, floatBitsToUint(end), 0u);
+    if (wanted > 0u) {
+        add_gas_pixel(pixel);
+    }
 
     State state = State(uvec4(f, covered, floatBitsToUint(end), cuts), uvec4(0u), uvec3(phase, 0u, 0u));
     if (phase == MERGING) {

@@ -11,7 +11,7 @@ use super::capacity::Capacity;
 use super::context::Context;
 use super::progress::Progress;
 use crate::gpu::transfer::{read_buffer, upload};
-use crate::gpu::{Buffer, Error, ShaderLibrary};
+use crate::gpu::{Buffer, BufferDesc, Error, ShaderLibrary};
 
 /// The bit of a link that leads to a section, see `lists.glsl`.
 const SECTION_LINK: u32 = 1 << 31;
@@ -32,6 +32,8 @@ pub struct ABuffer {
     pub pixels: Arc<Buffer>,
     /// One [`CountersBlock`].
     pub counters: Arc<Buffer>,
+    /// The pixels whose rays meet gas, see `gas-pixels.glsl`: a `VkDispatchIndirectCommand`, their count, and each.
+    pub gas_pixels: Arc<Buffer>,
     /// States of pixels that a pass has not finished.
     pub progress: Progress,
 }
@@ -61,10 +63,12 @@ impl ABuffer {
     /// # Errors
     /// [`Error::Limit`] for a capacity or a picture beyond what the device binds.
     pub fn new(context: &Context<'_>, capacity: Capacity) -> Result<Self, Error> {
-        let pixel_count = context.parameters.width.saturating_mul(capacity.rows).into();
+        let pixel_count = u64::from(context.parameters.width.saturating_mul(capacity.rows));
         let fragment_count = capacity.fragments.into();
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let zeros = [0; size_of::<CountersBlock>()];
+        let device = context.shaders.device();
+        let gas_pixels = BufferDesc::new(context.name("gas-pixels"), 4 * (4 + pixel_count));
         Ok(ABuffer {
             capacity,
             heads: context.storage::<u32>("heads", pixel_count)?,
@@ -72,7 +76,8 @@ impl ABuffer {
             surfaces: context.storage::<SurfaceBlock>("fragment-surfaces", fragment_count)?,
             colors: context.storage::<ColorBlock>("fragment-colors", fragment_count)?,
             pixels: context.storage::<PixelBlock>("pixels", pixel_count)?,
-            counters: upload(context.shaders.device(), &context.name("counters"), usage, &zeros)?,
+            counters: upload(device, &context.name("counters"), usage, &zeros)?,
+            gas_pixels: Buffer::new(device, gas_pixels.usage(usage | vk::BufferUsageFlags::INDIRECT_BUFFER))?,
             progress: Progress::new(context, pixel_count)?,
         })
     }

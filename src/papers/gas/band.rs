@@ -23,6 +23,8 @@ host_block! {
         picture_row: u32,
         end_list_row: u32,
         rest: u32,
+        part: u32,
+        part_bits: u32,
     }
 }
 
@@ -56,12 +58,17 @@ impl Band {
         let Band { first_row, end_row, picture_row, .. } = self;
         let (list_row, end_list_row) = (first_row, end_row);
         let band = BandConstants { list_row, first_row, end_row, picture_row, end_list_row, ..BandConstants::zeroed() };
-        BandConstants { calls: 1, ..band }
+        BandConstants { calls: 1, part_bits: self.parts().trailing_zeros(), ..band }
     }
 
     /// For so many triangles of a piece, before which come others.
     pub fn constants_of_piece(self, first_triangle: u32, triangle_count: u32) -> BandConstants {
         BandConstants { first_triangle, triangle_count, ..self.constants() }
+    }
+
+    /// Dispatches of a pass over listed pixels, a power of two: each is of as many pixels as [`DISPATCH_ROWS`] rows have, or fewer.
+    fn parts(self) -> u32 {
+        (self.end_row - self.first_row).div_ceil(DISPATCH_ROWS).next_power_of_two()
     }
 
     /// Tiles of that many pixels a side along both axes, the first at its first row.
@@ -103,7 +110,7 @@ impl Band {
     /// # Errors
     /// Those of Vulkan.
     pub fn dispatch_times(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        self.dispatch_rows(self.constants(), self.end_row - self.first_row, calls, frame, pass)
+        (0..calls).try_for_each(|call| self.dispatch_call(call, calls, frame, pass))
     }
 
     /// Dispatches a thread a pixel once, as number `call` of the band's `calls` dispatches of the pass.
@@ -122,31 +129,37 @@ impl Band {
     /// # Errors
     /// Those of Vulkan.
     pub fn dispatch_in_parts(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        self.dispatch_rows(self.constants(), DISPATCH_ROWS, calls, frame, pass)
+        (0..calls).try_for_each(|call| {
+            frame.compute(pass, |dispatch| {
+                for (first_row, end_row) in ranges(self.first_row, self.end_row, DISPATCH_ROWS) {
+                    let constants = BandConstants { first_row, end_row, call, calls, ..self.constants() };
+                    dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
+                }
+            })
+        })
+    }
+
+    /// Dispatches a pass over the pixels with gas that `sort` has listed `calls` times, in parts that take a short time each.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn dispatch_listed(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        self.dispatch_parts(self.constants(), calls, frame, pass)
     }
 
     /// The same for the pixels that are not of the lattice whose gas is marched first.
     ///
     /// # Errors
     /// Those of Vulkan.
-    pub fn dispatch_rest_in_parts(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        let rest = BandConstants { rest: 1, ..self.constants() };
-        self.dispatch_rows(rest, DISPATCH_ROWS, calls, frame, pass)
+    pub fn dispatch_listed_rest(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        self.dispatch_parts(BandConstants { rest: 1, ..self.constants() }, calls, frame, pass)
     }
 
-    fn dispatch_rows(
-        self,
-        band: BandConstants,
-        rows: u32,
-        calls: u32,
-        frame: &mut Frame<'_>,
-        pass: &Pass,
-    ) -> Result<(), Error> {
+    fn dispatch_parts(self, band: BandConstants, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
         (0..calls).try_for_each(|call| {
             frame.compute(pass, |dispatch| {
-                for (first_row, end_row) in ranges(self.first_row, self.end_row, rows) {
-                    let constants = BandConstants { first_row, end_row, call, calls, ..band };
-                    dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
+                for part in 0..self.parts() {
+                    dispatch.constants(&BandConstants { part, call, calls, ..band }).groups_indirect();
                 }
             })
         })
@@ -163,13 +176,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_is_in_one_dispatch_of_one_band() {
+    fn every_row_is_in_one_band_of_short_dispatches() {
         for (height, rows) in [(1, 1), (768, 768), (4096, 512), (16384, 33), (5, 9)] {
             for picture in [0..height, height / 3..height / 2 + 1] {
                 let bands: Vec<Band> = Band::all(16, &picture, rows).collect();
                 assert!(bands.iter().map(|b| b.is_first()).eq((0..bands.len()).map(|number| number == 0)));
                 let parts = bands.iter().flat_map(|b| ranges(b.first_row, b.end_row, DISPATCH_ROWS));
                 assert!(parts.flat_map(|(first, end)| first..end).eq(picture), "{height} in {rows}");
+                for band in &bands {
+                    let (parts, pixels) = (band.parts(), 16 * (band.end_row - band.first_row));
+                    assert!(pixels.div_ceil(parts) <= 16 * DISPATCH_ROWS && 1 << band.constants().part_bits == parts);
+                }
             }
         }
     }

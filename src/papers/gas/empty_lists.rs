@@ -19,6 +19,7 @@ impl EmptyLists {
             .with("frame", &scene.frame)
             .with("Heads", &lists.heads)
             .with("Counters", &lists.counters)
+            .with("GasPixels", &lists.gas_pixels)
             .constants::<BandConstants>()
             .build(context.shaders)?;
         Ok(EmptyLists { pass })

@@ -43,7 +43,7 @@ impl Parameters {
         let vertices: usize = objects.iter().map(|o| o.mesh.positions.len()).sum();
         let (vertices, triangles) = (vertices as f64, triangles as f64);
         let of_fragment = bytes_of::<LinkBlock>() + bytes_of::<SurfaceBlock>() + bytes_of::<ColorBlock>();
-        let of_pixel = NUMBER + bytes_of::<PixelBlock>() + bytes_of::<StateBlock>();
+        let of_pixel = 2.0 * NUMBER + bytes_of::<PixelBlock>() + bytes_of::<StateBlock>();
         let optional = |is_made: bool, bytes: f64| if is_made { bytes } else { 0.0 };
 
         let grids = self.volume_grids();

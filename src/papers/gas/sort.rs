@@ -1,4 +1,5 @@
-//! `sort`: each pixel's list by depth, the depth at which its tracing ends, and the slots of the sections to come.
+//! `sort`: each pixel's list by depth, the depth at which its tracing ends, the slots of the sections to come, and the pixels
+//! that have some.
 
 use super::a_buffer::ABuffer;
 use super::band::{Band, BandConstants};
@@ -35,6 +36,7 @@ impl Sort {
             .with("Pixels", &lists.pixels)
             .with("Progress", &lists.progress.states)
             .with("Unfinished", &lists.progress.unfinished)
+            .with("GasPixels", &lists.gas_pixels)
             .constants::<BandConstants>()
             .build(context.shaders)?;
         Ok(Sort { pass })

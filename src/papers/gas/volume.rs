@@ -83,8 +83,8 @@ impl VolumeMarch {
     }
 
     pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
-        band.dispatch_in_parts(calls, frame, &self.pass)?;
-        if self.has_lattice { band.dispatch_rest_in_parts(calls, frame, &self.pass) } else { Ok(()) }
+        band.dispatch_listed(calls, frame, &self.pass)?;
+        if self.has_lattice { band.dispatch_listed_rest(calls, frame, &self.pass) } else { Ok(()) }
     }
 }
 
@@ -104,5 +104,7 @@ fn with_lists(shader: &str, scene: &SceneBuffers, lists: &ABuffer, sections: &Ar
         .with("Sections", sections)
         .with("Progress", &lists.progress.states)
         .with("Unfinished", &lists.progress.unfinished)
+        .with("GasPixels", &lists.gas_pixels)
+        .indirect(&lists.gas_pixels)
         .constants::<BandConstants>()
 }
