@@ -52,7 +52,7 @@ const LIMITS: [(&str, &str); 45] = [
     ("max-descriptor-set-samplers=0", "lc"),
     ("max-descriptor-set-uniform-buffers=0", "lgcbt"),
     ("max-descriptor-set-storage-buffers=0", "lgcbt"),
-    ("max-descriptor-set-storage-buffers=12", "b"),
+    ("max-descriptor-set-storage-buffers=12", "gb"),
     ("max-descriptor-set-sampled-images=0", "lgcbt"),
     ("max-descriptor-set-storage-images=0", "lgbt"),
 ];
