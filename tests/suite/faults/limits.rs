@@ -73,7 +73,8 @@ const LOWEST: &str = "max-image-dimension-2d=4096,max-image-dimension-3d=256,max
                       max-per-stage-descriptor-samplers=16,max-per-stage-descriptor-uniform-buffers=12,\
                       max-per-stage-descriptor-sampled-images=16,max-per-stage-descriptor-storage-images=4,\
                       max-descriptor-set-samplers=48,max-descriptor-set-uniform-buffers=36,\
-                      max-descriptor-set-sampled-images=48,max-descriptor-set-storage-images=12,\
+                      max-descriptor-set-storage-buffers=24,max-descriptor-set-sampled-images=48,\
+                      max-descriptor-set-storage-images=12,\
                       min-uniform-buffer-offset-alignment=256,min-storage-buffer-offset-alignment=256,\
                       buffer-image-granularity=131072,non-coherent-atom-size=256";
 
