@@ -82,7 +82,7 @@ pub struct Parameters {
     pub water_triangles: u32,
     /// Position and diffuse map in one pass with two targets; in two passes without.
     pub mrt: bool,
-    /// Smart slicing, section 3.4.
+    /// Smart slicing, section 4.7.2.
     pub smart: SmartParameters,
     /// Texels a side of the caustics map that are drawn and averaged for each of its texels, 1 to 64.
     pub coverage: u32,
@@ -246,7 +246,7 @@ impl Parameters {
                 .help(
                     "Position and diffuse map in one pass with two targets (figure 5-6), or in two passes (figure 5-5)",
                 )
-                .section("5.2.3")
+                .section("5.2.2")
                 .cost(Cost::Pipelines),
             Parameter::new("levels", field!(Parameters.smart.levels))
                 .range(Range::from(1.0).to(65_536.0))
@@ -299,7 +299,7 @@ impl Parameters {
             Parameter::new("refraction-index", field!(Parameters.refraction_index))
                 .range(Range::above(1.0).to(4.0))
                 .help("Refraction index of water against air")
-                .section("eq. 4-1")
+                .section("eq. 2-7")
                 .cost(Cost::Buffers),
             Parameter::new("absorption", field!(Parameters.absorption_per_m))
                 .range(Range::from(0.0).to(1e6))

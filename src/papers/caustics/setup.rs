@@ -277,7 +277,7 @@ impl Study for Setup {
                 .unrecorded(),
             Parameter::new("light", field!(Setup.parallel_lights))
                 .help("Direction of parallel light, downwards")
-                .section("eq. 4-9")
+                .section("4.2.1")
                 .default_text("0,-1,0")
                 .cost(Cost::Buffers)
                 .unrecorded(),
