@@ -158,3 +158,8 @@ Clip clip_to_map(Subsegment subsegment) {
     float near = max(u.x, v.x);
     return Clip(near, min(u.y, v.y), near > 0.0 ? side : TERRAIN);
 }
+
+// What leads a ray of any direction a texel of a level on.
+float texel_m(vec3 direction, int shift) {
+    return terrain.widest_spacing_m * exp2(float(shift));
+}

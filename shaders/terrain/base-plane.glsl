@@ -93,3 +93,9 @@ bool is_straight(vec3 slack, int shift) {
 Clip clip_to_map(Subsegment subsegment) {
     return Clip(0.0, 1.0, TERRAIN);
 }
+
+// What leads a ray of that direction a texel of a level on, but no farther than the longest side of one.
+float texel_m(vec3 direction, int shift) {
+    float nodes = max(max(abs(direction.x), abs(direction.y)), 1.0e-20); // for 1 m
+    return min(terrain.widest_spacing_m, 1.0 / nodes) * exp2(float(shift));
+}

@@ -112,8 +112,13 @@ impl<T: Texel> RayCaster<'_, T> {
     pub fn is_shadowed(&self, direction: Vec3, hit: &Hit) -> bool {
         let shift = hit.shift.min(self.field.shape().top) as i32;
         let sun = self.terrain.to_sun;
-        // A texel away from the surface itself.
-        let away_m = self.terrain.widest_spacing_m * (shift as f32).exp2() + 1e-5 * hit.depth_m;
+        // A texel away from the surface itself, in the direction of the sun.
+        let widest_m = self.terrain.widest_spacing_m;
+        let texel_m = match self.terrain.base_kind {
+            PLANE => widest_m.min(1.0 / sun.x.abs().max(sun.y.abs()).max(1e-20)),
+            _ => widest_m,
+        };
+        let away_m = texel_m * (shift as f32).exp2() + 1e-5 * hit.depth_m;
         let from = self.terrain.eye + hit.depth_m * direction + away_m * sun;
         let caster = RayCaster { footprint: Footprint::Level(shift), ..*self };
         caster.trace(from, sun, NO_DEPTH).is_some()

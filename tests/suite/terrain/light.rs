@@ -63,11 +63,48 @@ fn shadows_of_rough_land_fall_at_every_level_of_detail() {
     });
 }
 
+/// However far apart its columns are: the shadow of a wall falls along them.
+#[test]
+fn a_wall_s_shadow_is_as_long_whatever_the_spacing_across_it() {
+    gpu_test(|device| {
+        let heights: Vec<f32> =
+            (0..33 * 257).map(|at| if (120..=126).contains(&(at / 33)) { 8.0 } else { 0.0 }).collect();
+        let draw = |across_m: f64, variant| {
+            let map = HeightMap::new(33, 257, Samples::Float(heights.clone())).unwrap();
+            let map = map.with_spacing_m(DVec2::new(across_m, 1.0)).unwrap();
+            let world = World::alone("wall", Base::Plane, Interpolation::Bilinear, None, map);
+            let camera = lens(&world, DVec2::new(0.5, 0.75), 60.0, DVec2::new(0.5, 0.52), 0.25);
+            let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.5 };
+            let parameters = Parameters { shadows: true, sun, lod: Lod::Exact, ..world.parameters(camera, SIZE) };
+            let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
+            Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs).from(camera)
+        };
+        let dark = |drawing: &Drawing| drawing.sunlit.iter().filter(|&&light| light == 0.0).count();
+        let square = dark(&draw(1.0, Variant::GpuCompute));
+        assert!(square > 40, "{square}");
+        for across_m in [16.0, 100.0] {
+            let compute = draw(across_m, Variant::GpuCompute);
+            let found = dark(&compute);
+            assert!(found.abs_diff(square) * 8 <= square, "{found} at {across_m} m, {square} at 1 m");
+            for variant in [Variant::Cpu, Variant::DdaCompute, Variant::DdaCpu] {
+                let differing = differing(&compute, &draw(across_m, variant));
+                assert!(differing * 200 <= compute.hits.len(), "{variant:?} at {across_m} m: {differing}");
+            }
+        }
+    });
+}
+
 /// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
 /// lowered by a hair they must meet a map where it sees none.
 fn assert_shadows(device: &Arc<Device>, world: &World, lod: Lod, sun: Sun, cameras: [Camera; 2]) {
-    let spacing_m = world.maps[0].map.spacing_m().max_element();
+    let spacing_m = world.maps[0].map.spacing_m();
     let to_sun = world.turned(sun.direction().as_dvec3());
+    let texel_m = match world.base {
+        Base::Plane => {
+            (1.0 / (to_sun.x / spacing_m.x).abs().max((to_sun.z / spacing_m.y).abs())).min(spacing_m.max_element())
+        }
+        _ => spacing_m.max_element(),
+    };
     let parameters = Parameters { shadows: true, sun, lod, ..world.parameters(cameras[0], SIZE) };
     let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
     let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
@@ -86,7 +123,7 @@ fn assert_shadows(device: &Arc<Device>, world: &World, lod: Lod, sun: Sun, camer
             let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
             let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
             let depth_m = f64::from(hit.depth_m);
-            let start = world.moved(rays.eye + depth_m * direction) + (spacing_m + 1e-5 * depth_m) * to_sun;
+            let start = world.moved(rays.eye + depth_m * direction) + (texel_m + 1e-5 * depth_m) * to_sun;
             let up = world.terrain.base.frame(world.terrain.base.place(start)).normal;
             let moved = |cells: f64| start + cells * world.cell_m() * up;
             if *sunlit == 1.0 {
