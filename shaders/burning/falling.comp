@@ -12,7 +12,6 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "burning/constants.glsl"
-#include "burning/parting.glsl"
 #include "burning/moments.glsl"
 #include "burning/contacts.glsl"
 #include "burning/meeting.glsl"
@@ -30,10 +29,6 @@ layout(set = 0, binding = 14, std430) readonly buffer Cells {
 
 layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
     vec4 new_rotations[]; // pitch, yaw, roll
-};
-
-layout(set = 0, binding = 63, std430) readonly buffer Searching {
-    Progress progress;
 };
 
 layout(set = 0, binding = 66, std430) buffer Parts {
@@ -70,13 +65,18 @@ const float MARGIN = 0.005;
 // Of a point: moments of parts that are thinner would not be invertible. Diagonals squared.
 const float THINNEST = 1e-6;
 
+float sum_of(uint part, uint k) {
+    uint low = part * MOMENTS + 2u * k;
+    return float(sums[low + 1u]) * 4294967296.0 + float(sums[low]);
+}
+
 // Mean of a quantity as a fraction of its range.
 float mean_of(uint part, uint k) {
     float weight = float(sums[part * MOMENTS]);
-    float word = 1.0 / float(1u << progress.moment_bits);
-    float low = float(sums[part * MOMENTS + 1u + 2u * k]) / weight;
-    float high = float(sums[part * MOMENTS + 2u + 2u * k]) / weight;
-    return word * (high + word * (low + 0.5));
+    float half_of = 1.0 / float(1u << HALF_BITS);
+    float low = sum_of(part, 1u + 2u * k) / weight;
+    float high = sum_of(part, 2u + 2u * k) / weight;
+    return half_of * (high + half_of * (low + 0.5));
 }
 
 vec3 mean_arm(uint part) {

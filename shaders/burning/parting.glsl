@@ -4,5 +4,4 @@ struct Progress {
     uint is_unsettled; // some triangle's corners are not known to hang together yet
     uint is_numbered; // the parts have numbers that nothing has taken over yet
     uint part_count;
-    uint moment_bits; // of a word of a moment
 };

@@ -6,7 +6,6 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "burning/constants.glsl"
-#include "burning/parting.glsl"
 #include "burning/moments.glsl"
 #include "burning/bent.glsl"
 #include "burning/rotation.glsl"
@@ -22,10 +21,6 @@ layout(set = 0, binding = 14, std430) readonly buffer Cells {
 
 layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
     vec4 new_rotations[]; // pitch, yaw, roll
-};
-
-layout(set = 0, binding = 63, std430) readonly buffer Searching {
-    Progress progress;
 };
 
 layout(set = 0, binding = 65, std430) readonly buffer PartOf {
@@ -46,28 +41,31 @@ layout(set = 0, binding = 69, std430) readonly buffer Weights {
 
 const uint RUN = 16u;
 
-uint run_sums[MOMENTS];
+uint run_sums[SUMS]; // of a weight below 256 times a half they are no longer than a word
 
 void flush(uint part) {
-    for (uint k = 0u; k < MOMENTS; k++) {
+    for (uint k = 0u; k < SUMS; k++) {
         if (run_sums[k] != 0u) {
-            atomicAdd(sums[part * MOMENTS + k], run_sums[k]);
+            uint low = part * MOMENTS + 2u * k;
+            uint before = atomicAdd(sums[low], run_sums[k]);
+            if (before + run_sums[k] < before) {
+                atomicAdd(sums[low + 1u], 1u);
+            }
         }
         run_sums[k] = 0u;
     }
 }
 
 void add(uint k, float fraction, uint weight) {
-    uint bits = progress.moment_bits;
-    uint whole = uint(clamp(fraction, 0.0, 1.0) * float((1u << (2u * bits)) - 1u));
-    run_sums[1u + 2u * k] += weight * (whole & ((1u << bits) - 1u));
-    run_sums[2u + 2u * k] += weight * (whole >> bits);
+    uint whole = uint(clamp(fraction, 0.0, 1.0) * float((1u << (2u * HALF_BITS)) - 1u));
+    run_sums[1u + 2u * k] += weight * (whole & ((1u << HALF_BITS) - 1u));
+    run_sums[2u + 2u * k] += weight * (whole >> HALF_BITS);
 }
 
 void main() {
     uint first = element(64u) * RUN;
     uint current = NO_PART;
-    for (uint k = 0u; k < MOMENTS; k++) {
+    for (uint k = 0u; k < SUMS; k++) {
         run_sums[k] = 0u;
     }
     for (uint i = 0u; i < RUN; i++) {

@@ -309,9 +309,11 @@ impl Buffers {
             start: Vec::new(),
         };
         let Buffers { labels, triangle_labels, removed, cells, blocks, flows, alive, clock, counted, .. } = &buffers;
-        let finished = [&buffers.vertex_chunks.finished, &buffers.triangle_chunks.finished];
+        // A tick that is divided goes on over the lists that its first slice has made.
+        let chunks = [&buffers.vertex_chunks, &buffers.triangle_chunks];
+        let chunks = chunks.map(|chunks| [&chunks.finished, &chunks.changed.visited, &chunks.changed.groups]);
         let kept = [labels, triangle_labels, removed, cells, blocks, flows, alive, clock, counted];
-        let kept = kept.into_iter().chain(finished);
+        let kept = kept.into_iter().chain(chunks.into_iter().flatten());
         let pairs = [&buffers.states, &buffers.rotations, &buffers.base_displacements];
         let kept: Vec<_> = kept.chain(pairs.into_iter().flatten()).cloned().collect();
         for buffer in kept {

@@ -73,7 +73,7 @@ impl Falling {
         let build = |pass, swapped: &[_]| ping_pong::build(shaders, pass, swapped);
         let clear = step("falling-clear").with("Contacts", &contacts).with("Balls", &balls);
         let meet = touched("falling-meetings").with("Met", &met).with("Moving", &moving);
-        let known = placed("falling").with("Searching", &parts.progress).with("Sums", &parts.sums);
+        let known = placed("falling").with("Sums", &parts.sums);
         let fall = known.with("Contacts", &contacts).with("Met", &met).with("Moving", &moving);
         let vertices = Work::Elements(model.vertex_count());
         let steps = PingPong::new([

@@ -71,8 +71,6 @@ host_block! {
         pub(super) is_numbered: u32,
         /// Of the last search that came to its end.
         pub(super) part_count: u32,
-        /// Bits of a half of a moment's summand.
-        pub(super) moment_bits: u32,
     }
 }
 
@@ -89,7 +87,7 @@ pub const MOST_PARTS: u32 = 1024;
 /// Ticks from one search for parts to the next: what comes off begins to fall within twice as many.
 pub const SEARCH_TICKS: u64 = 4;
 /// Words of a part's moments (`burning/moments.glsl`).
-const MOMENTS: u32 = 19;
+const MOMENTS: u32 = 38;
 /// Vertices that a thread sums up (`burning/parts-moments.comp`).
 const RUN: u32 = 16;
 /// Weight of a vertex of mean area, and the greatest.
@@ -149,8 +147,6 @@ impl Parts {
         let list = |name: &str, list: &[u32]| table(name, bytemuck::cast_slice(list));
         let count = model.vertex_count();
         let weights = weights(model);
-        let total: u64 = weights.iter().map(|&weight| u64::from(weight)).sum();
-        let progress = Progress { moment_bits: moment_bits(total), ..Progress::default() };
         let none = vec![u32::MAX; count as usize];
         let zeros = vec![0; count as usize];
         let roots = list("roots", &(0..count).collect::<Vec<_>>())?;
@@ -160,7 +156,7 @@ impl Parts {
         let parts = table("parts", bytemuck::cast_slice(&vec![Part::default(); MOST_PARTS as usize]))?;
         let inherited = table("inherited-parts", bytemuck::cast_slice(&vec![Part::default(); MOST_PARTS as usize]))?;
         let sums = list("moments", &vec![0; (MOST_PARTS * MOMENTS) as usize])?;
-        let progress = table("parts-progress", bytemuck::bytes_of(&progress))?;
+        let progress = table("parts-progress", bytemuck::bytes_of(&Progress::default()))?;
         let weights = list("vertex-weights", &weights)?;
         let pairs: &[[u32; 2]] = if model.touching.is_empty() { &[[0, 0]] } else { &model.touching };
         let touching = list("touching", pairs.as_flattened())?;
@@ -175,8 +171,9 @@ impl Parts {
         let state = new("NewState", &buffers.states);
         let rotations = new("NewRotations", &buffers.rotations);
         let placed =
-            |name: &str| searched(name).with("Cells", &buffers.cells).with("Parts", &parts).with("Bends", &bends);
+            |name: &str| step(name).with("Cells", &buffers.cells).with("Parts", &parts).with("Bends", &bends);
         let inherit = placed("inherit")
+            .with("Searching", &progress)
             .with("Roots", &roots)
             .with("Attached", &attached)
             .with("Numbers", &numbers)
@@ -294,25 +291,4 @@ fn weights(model: &Model) -> Vec<u32> {
     let areas = model.vertex_areas();
     let mean = model.mean_vertex_area().max(f64::MIN_POSITIVE);
     areas.iter().map(|area| (area / mean * MEAN_WEIGHT).round().clamp(1.0, MOST_WEIGHT) as u32).collect()
-}
-
-/// Bits of a word of a moment: as many as no sum over weights of that `total` passes 32 with, and two words a number of
-/// 32-bit floats hold.
-fn moment_bits(total: u64) -> u32 {
-    let of_weights = u64::BITS - total.leading_zeros();
-    (u32::BITS - of_weights.min(u32::BITS - 1)).min(12)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sums_of_words_fit() {
-        for total in [1_u64, 16, 16_000, 1 << 20, (1 << 20) - 1, 90_000_000, (1 << 31) - 1] {
-            let bits = moment_bits(total);
-            assert!(bits >= 1 && total * ((1 << bits) - 1) <= u64::from(u32::MAX), "{total}: {bits}");
-        }
-        assert_eq!(moment_bits(16_000), 12);
-    }
 }

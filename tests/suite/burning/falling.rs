@@ -33,11 +33,16 @@ fn dropped() -> Parameters {
 
 /// Boxes of sizes at places.
 fn boxes(parts: &[(Vec3, Vec3)]) -> Mesh {
-    let mut boxes = parts
-        .iter()
-        .map(|&(size, at)| shapes::cuboid().transformed(&(Mat4::from_translation(at) * Mat4::from_scale(size / 2.0))));
-    let mut mesh = boxes.next().expect("one at least");
-    for part in boxes {
+    joined(
+        parts.iter().map(|&(size, at)| {
+            shapes::cuboid().transformed(&(Mat4::from_translation(at) * Mat4::from_scale(size / 2.0)))
+        }),
+    )
+}
+
+fn joined(mut parts: impl Iterator<Item = Mesh>) -> Mesh {
+    let mut mesh = parts.next().expect("one at least");
+    for part in parts {
         let first = mesh.positions.len() as u32;
         mesh.indices.extend(part.indices.iter().map(|i| first + i));
         mesh.positions.extend(&part.positions);
@@ -378,5 +383,41 @@ fn equal_time_gives_equal_bits_and_a_restart_replays() {
         let mut fire = Fire::new(device, Variant::Shell, &halves, &mesh);
         (0..242).for_each(|number| fire.frame(number));
         assert!(bits(&fire) == expected);
+    });
+}
+
+/// Beside a body of so many vertices that sums over it are longer than a word, chips fall as they do anywhere.
+#[test]
+fn chips_beside_a_body_of_100000_vertices_fall_to_the_ground() {
+    gpu_test(|device| {
+        let chips: Vec<(Vec3, Vec3)> = (0..12)
+            .map(|k| {
+                let (z, x) = (0.5 * k as f32).sin_cos();
+                (Vec3::new(0.02, 0.012, 0.03), Vec3::new(1.4 * x, -0.8 + 0.02 * k as f32, 1.4 * z))
+            })
+            .collect();
+        let mesh = joined([shapes::sphere(400, 260), boxes(&chips)].into_iter());
+        let parameters = Parameters { floor: None, bending: 0.0, ..dropped() };
+        let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh);
+        assert!(fire.paper.model().vertex_count() > 100_000);
+        let floor = fire.paper.model().floor;
+        let mut fallen = 0;
+        for _ in 0..12 {
+            fire.ticks(4);
+            let seen = Seen::of(&fire);
+            let numbers: std::collections::BTreeSet<u32> =
+                seen.part_of.iter().copied().filter(|&part| part < MOST_PARTS).collect();
+            fallen = 0;
+            for &part in &numbers {
+                let state = &seen.parts[part as usize];
+                assert!(state.energy.is_finite() && state.energy > -0.05, "part {part}: energy {}", state.energy);
+                let body = seen.body(part);
+                let lowest = seen.members(part).0.iter().map(|&place| body.world(place).y).fold(f64::MAX, f64::min);
+                assert!(lowest > f64::from(floor) - 0.004, "part {part}: {lowest}, the ground at {floor}");
+                let center = state.center.as_dvec3();
+                fallen += usize::from(body.world(center).y < center.y - 0.01);
+            }
+        }
+        assert!(fallen >= 10, "{fallen} chips have fallen");
     });
 }
