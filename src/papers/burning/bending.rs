@@ -12,7 +12,7 @@ use super::parameters::Parameters;
 use super::parts::{Bend, MEAN_WEIGHT, Parts, SEARCH_TICKS};
 use super::ping_pong::{self, new};
 use crate::gpu::transfer::upload;
-use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
+use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
@@ -105,10 +105,6 @@ impl Bending {
         let Sections { sections, joints, around, cuts, holds, .. } = divided;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let table = |name: &str, bytes: &[u8]| upload(shaders.device(), &format!("{label}/{name}"), storage, bytes);
-        let empty = |name: &str, bytes: usize| {
-            let desc = BufferDesc::new(format!("{label}/{name}"), bytes.max(4) as u64);
-            Buffer::new(shaders.device(), desc.usage(storage))
-        };
         let section_count = sections.len() - 1;
         let sizes = Sizes {
             section_count: section_count as u32,
@@ -133,14 +129,14 @@ impl Bending {
         let strengths = table("joint-strengths", &vec![0; 4 * joint_list.len()])?;
         let bends = table("section-bends", bytemuck::cast_slice(&vec![Bend::NONE; section_count]))?;
         let angles = table("joint-angles", &vec![0; 4 * joint_list.len()])?;
-        let hinges = empty("hinges", size_of::<Hinge>() * section_count)?;
+        let hinges = table("hinges", &vec![0; size_of::<Hinge>() * section_count])?;
         let [row, ..] = shaders.device().physical().limits.max_compute_work_group_count;
         let rows = model.vertex_count().div_ceil(GROUP).div_ceil(row).max(1);
         let usage = storage | vk::BufferUsageFlags::INDIRECT_BUFFER;
         let still = [0, rows, 1, 0];
         let moving = bytemuck::cast_slice::<u32, u8>(&still);
         let moving = upload(shaders.device(), &format!("{label}/bending"), usage, moving)?;
-        for buffer in [&loads, &strengths, &bends, &angles, &moving] {
+        for buffer in [&loads, &strengths, &bends, &angles, &hinges, &moving] {
             buffers.keep(shaders, buffer)?;
         }
         let step = |name: &str| {

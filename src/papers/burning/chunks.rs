@@ -21,8 +21,8 @@ host_block! {
     }
 }
 
-/// Words of a chunk beside its elements: its span, whether it has finished twice, its number in lists.
-pub(super) const WORDS: f64 = 6.0 / CHUNK as f64;
+/// Words of a chunk beside its elements: its span, twice whether it has finished, and its number in lists, twice in that of what changes.
+pub(super) const WORDS: f64 = 7.0 / CHUNK as f64;
 
 const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 
@@ -34,7 +34,7 @@ pub struct ChunkBuffers {
     pub spans: Arc<Buffer>,
     /// uint\[chunks\]: 1 where nothing is left to burn.
     pub finished: Arc<Buffer>,
-    /// Those that the tick changes.
+    /// Those that the tick changes; before the first one all.
     pub changed: Visits,
     count: ChunkCount,
 }
@@ -51,15 +51,15 @@ impl ChunkBuffers {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, label: &str, chunks: &Chunks) -> Result<Self, Error> {
-        let count = chunks.count();
         let [row, ..] = shaders.device().physical().limits.max_compute_work_group_count;
+        let count = ChunkCount { count: chunks.count(), row };
         let table = |what: &str, bytes: &[u8]| upload(shaders.device(), &format!("{label}-{what}"), STORAGE, bytes);
         Ok(ChunkBuffers {
             order: table("order", bytemuck::cast_slice(&chunks.order))?,
             spans: table("spans", bytemuck::cast_slice(&chunks.spans))?,
-            finished: table("finished", &vec![0; 4 * count as usize])?,
-            changed: Visits::new(shaders, &format!("{label}-changed"), count)?,
-            count: ChunkCount { count, row },
+            finished: table("finished", &vec![0; 4 * count.count as usize])?,
+            changed: Visits::all(shaders, &format!("{label}-changed"), count)?,
+            count,
         })
     }
 
@@ -76,18 +76,7 @@ impl ChunkBuffers {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn all(&self, shaders: &ShaderLibrary, label: &str) -> Result<Visits, Error> {
-        let ChunkCount { count, row } = self.count;
-        let numbers: Vec<u32> = std::iter::once(count).chain(0..count).collect();
-        let rows = count.div_ceil(row).max(1);
-        let visited = upload(shaders.device(), label, STORAGE, bytemuck::cast_slice(&numbers))?;
-        let groups = vk::BufferUsageFlags::INDIRECT_BUFFER | STORAGE;
-        let groups = upload(
-            shaders.device(),
-            &format!("{label}-groups"),
-            groups,
-            bytemuck::cast_slice(&[count.div_ceil(rows), rows, 1]),
-        )?;
-        Ok(Visits { visited, groups })
+        Visits::all(shaders, label, self.count)
     }
 
     /// The step of a pass that makes a list; what it needs beside spans and list is the caller's.
@@ -123,6 +112,21 @@ impl ChunkBuffers {
 }
 
 impl Visits {
+    fn all(shaders: &ShaderLibrary, label: &str, chunks: ChunkCount) -> Result<Self, Error> {
+        let ChunkCount { count, row } = chunks;
+        let numbers: Vec<u32> = std::iter::once(count).chain(0..count).collect();
+        let rows = count.div_ceil(row).max(1);
+        let visited = upload(shaders.device(), label, STORAGE, bytemuck::cast_slice(&numbers))?;
+        let groups = vk::BufferUsageFlags::INDIRECT_BUFFER | STORAGE;
+        let groups = upload(
+            shaders.device(),
+            &format!("{label}-groups"),
+            groups,
+            bytemuck::cast_slice(&[count.div_ceil(rows), rows, 1]),
+        )?;
+        Ok(Visits { visited, groups })
+    }
+
     fn new(shaders: &ShaderLibrary, label: &str, count: u32) -> Result<Self, Error> {
         let groups = STORAGE | vk::BufferUsageFlags::INDIRECT_BUFFER;
         let empty =

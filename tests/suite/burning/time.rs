@@ -81,6 +81,23 @@ fn left_out_frames_are_caught_up_and_a_restart_replays() {
     });
 }
 
+/// Back to a start in the midst of a tick, whatever the ticks after it have visited.
+#[test]
+fn a_restart_within_a_divided_tick_replays() {
+    gpu_test(|device| {
+        let mesh = MeshSource::Sphere.divided(20_000).load().unwrap();
+        let parameters = Parameters { time_division: 4, first_frame: 4 * TICKS + 2, fire: 0, smoke: 0, ..quick() };
+        let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh);
+        fire.frame(0);
+        let expected = fire.state();
+        (1..40).for_each(|number| fire.frame(number));
+        assert!(fire.state() != expected, "the case is too tame");
+        fire.paper.restart().unwrap();
+        fire.frame(0);
+        assert!(fire.state() == expected);
+    });
+}
+
 #[test]
 fn a_frame_before_the_last_is_refused() {
     gpu_test(|device| {
