@@ -1,6 +1,7 @@
 // The density functions of the section on modelling and animating the gases. Each moves the point through the solid
 // texture's space, along a helix as the frames go on, and makes a density of the turbulence there.
 
+#include "gas/densest.glsl"
 #include "gas/noise.glsl"
 
 // The random numbers of the fog's front (extern float offset[OFFSET_SIZE]).
@@ -81,7 +82,7 @@ float gas_density(vec3 world) {
         float radius = length(q) * (1.0 + in_hand.hypertexture_amplitude * value);
         return clamp((1.0 - radius) / in_hand.hypertexture_softness, 0.0, 1.0) * opaque;
     }
-    float density = pow(value * factor, power);
+    float density = min(pow(value * factor, power), MOST_DENSITY);
     if (kind == FOG) {
         density *= thickness;
     } else if (kind == STEAM) {

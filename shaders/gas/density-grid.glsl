@@ -1,6 +1,8 @@
 // Densities of files: samples on a grid in the box of each volume. What the device filters itself has a fraction of 8 bits
 // or so: samples are interpolated by hand.
 
+#include "gas/densest.glsl"
+
 struct Grid {
     vec3 to_column; // columns a metre
     uint columns;
@@ -46,5 +48,5 @@ bool is_in_grid(vec3 at, uvec3 size) {
 
 // Density of an interpolated sample.
 float transferred(float value) {
-    return pow(clamp(value, 0.0, 1.0) * in_hand.opaque, in_hand.power);
+    return min(pow(clamp(value, 0.0, 1.0) * in_hand.opaque, in_hand.power), MOST_DENSITY);
 }

@@ -7,6 +7,7 @@ use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture, Volume
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::{Rays, Sampling};
 use fumarole::papers::gas::reference::shadow_table::ShadowTables;
+use fumarole::papers::gas::scenes::Preset;
 use fumarole::papers::gas::{Parameters, Variant};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, Light, Mesh};
@@ -14,6 +15,7 @@ use glam::Vec3;
 
 use super::drawing::Drawing;
 use super::march::{FRAME, gases, parameters};
+use super::scenes::small;
 use crate::common::gpu_test;
 
 /// Largest difference of a drawing from rays in double precision whose gas shadows itself.
@@ -157,6 +159,28 @@ fn a_step_that_never_ends_is_refused_by_pass_and_parameter() {
             let error = drawn.err().expect("lavapipe cannot trace so long a ray").to_string();
             for part in ["volume", "`steps`", "3 pixels"] {
                 assert!(error.contains(part), "{part}: {error}");
+            }
+        }
+    });
+}
+
+/// The densest gas that the options allow is opaque: no power of the turbulence makes of it what is no number.
+#[test]
+fn gas_of_the_highest_power_has_a_finite_picture() {
+    gpu_test(|device| {
+        let (scene, objects) = small(Preset::Fig8);
+        for variant in [Variant::None, Variant::Table, Variant::Froxel] {
+            for density_cache in [None, Some(8)] {
+                let mut parameters = Parameters { width: 48, height: 36, density_cache, ..scene.clone() };
+                for volume in &mut parameters.volumes {
+                    volume.texture.power = 100.0;
+                    volume.texture.opaque = 1e6;
+                }
+                let drawing = Drawing::of(device, variant, &parameters, &objects);
+                let unlike = drawing.radiance.iter().filter(|value| !value.is_finite()).count();
+                assert_eq!(unlike, 0, "{variant:?}, cache {density_cache:?}");
+                let opaque = drawing.radiance.chunks_exact(4).filter(|texel| texel[3] > 0.999).count();
+                assert!(opaque > 20, "{variant:?}: {opaque}");
             }
         }
     });
