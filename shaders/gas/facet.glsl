@@ -21,9 +21,9 @@ Facet facet_of(uint triangle) {
     facet.object = corners.object;
     facet.offset = objects[facet.object].offset_m;
     facet.eye = frame.eye - facet.offset;
-    facet.p0 = vertices[facet.corner.x].position;
-    facet.p1 = vertices[facet.corner.y].position;
-    facet.p2 = vertices[facet.corner.z].position;
+    facet.p0 = position_of(facet.corner.x);
+    facet.p1 = position_of(facet.corner.y);
+    facet.p2 = position_of(facet.corner.z);
     facet.facing = cross(facet.p1 - facet.p0, facet.p2 - facet.p0);
     vec3 depths = vec3(dot(facet.p0 - facet.eye, frame.forward), dot(facet.p1 - facet.eye, frame.forward),
         dot(facet.p2 - facet.eye, frame.forward));

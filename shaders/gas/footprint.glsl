@@ -66,8 +66,8 @@ Footprint footprint_of(uint triangle) {
     uvec3 corner = drawn.vertices;
     uint object = drawn.object;
     vec3 offset = objects[object].offset_m;
-    Footprint seen = polygon_of(to_view(vertices[corner.x].position + offset),
-        to_view(vertices[corner.y].position + offset), to_view(vertices[corner.z].position + offset));
+    Footprint seen = polygon_of(to_view(position_of(corner.x) + offset),
+        to_view(position_of(corner.y) + offset), to_view(position_of(corner.z) + offset));
     vec2 low = min(min(seen.ab.xy, seen.ab.zw), min(seen.cd.xy, seen.cd.zw));
     vec2 high = max(max(seen.ab.xy, seen.ab.zw), max(seen.cd.xy, seen.cd.zw));
     low = max(floor(low), vec2(0.0, band.first_row));

@@ -162,8 +162,8 @@ Fragment shaded(Facet facet, vec2 at, float depth, uint mask, float coverage, ve
         0.0, 1.0);
     float weight_2 = clamp(dot(cross(facet.p1 - facet.p0, point - facet.p0), facet.facing) / max(twice_area, 1.0e-30),
         0.0, 1.0 - weight_1);
-    vec3 normal = vertices[facet.corner.x].normal * (1.0 - weight_1 - weight_2)
-        + vertices[facet.corner.y].normal * weight_1 + vertices[facet.corner.z].normal * weight_2;
+    vec3 normal = normal_of(facet.corner.x) * (1.0 - weight_1 - weight_2)
+        + normal_of(facet.corner.y) * weight_1 + normal_of(facet.corner.z) * weight_2;
     if (dot(normal, normal) < 1.0e-12) {
         normal = facet.facing;
     }

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 #include "common/elements.glsl"
 #include "lava/cells.glsl"
-#include "lava/by-cells.glsl"
+#include "common/texels.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D positions;
 

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#include "lava/by-cells.glsl"
+#include "common/texels.glsl"
 
 layout(push_constant, std430) uniform Gather {
     vec3 space_m;

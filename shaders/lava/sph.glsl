@@ -1,7 +1,7 @@
 // Smoothed particle hydrodynamics of the variant of stage one that flows: constants, the kernel, walls, and the cells
 // around a particle. Particles are in the order of their cells; cells along y follow each other.
 
-#include "lava/by-cells.glsl"
+#include "common/texels.glsl"
 
 layout(push_constant, std430) uniform Flow {
     vec3 space_m;

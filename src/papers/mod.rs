@@ -3,6 +3,7 @@
 mod device_mesh;
 #[cfg(test)]
 mod layout;
+mod texels;
 mod tone;
 mod triangle_tree;
 

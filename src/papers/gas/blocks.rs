@@ -137,7 +137,7 @@ host_block! {
 }
 
 host_block! {
-    /// A vertex of all meshes in one: metres, and a unit normal.
+    /// A vertex of all meshes in one, two texels: metres, and a unit normal.
     pub struct VertexBlock {
         position: [f32; 3],
         _after_position: f32,
@@ -147,7 +147,7 @@ host_block! {
 }
 
 host_block! {
-    /// Three vertices and the object that they belong to.
+    /// Three vertices and the object that they belong to, a texel.
     pub struct TriangleBlock {
         /// Indices of its corners.
         pub vertices: [u32; 3],

@@ -1,8 +1,6 @@
 //! Sizes that follow from the parameters and the surfaces.
 
-use super::blocks::{
-    ColorBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock, TriangleBlock, VertexBlock,
-};
+use super::blocks::{ColorBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock};
 use super::capacity::{BufferLimit, Capacity};
 use super::grid::Filter;
 use super::model::Object;
@@ -10,6 +8,7 @@ use super::parameters::{March, Parameters, Variant};
 use super::progress::StateBlock;
 use super::tiles;
 use crate::measure::estimate::Estimate;
+use crate::papers::texels;
 
 /// Bytes of a number.
 const NUMBER: f64 = 4.0;
@@ -89,7 +88,7 @@ impl Parameters {
                 ("bricks", NUMBER * bricks),
                 ("froxels", 2.0 * RADIANCE * froxels),
                 ("table", 2.0 * NUMBER * table * volumes * (1.0 + lights)),
-                ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
+                ("object", texels::bytes_of(2.0 * vertices) + texels::bytes_of(triangles)),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
             ],
             passes: Some((limit.parameters(), PASSES * bands + tables)),

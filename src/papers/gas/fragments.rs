@@ -27,8 +27,8 @@ impl Fragments {
                 None => Self::pass(context, has_geometry_stage, scene, piece, lists)?,
                 Some((first, ..)) => first
                     .rebind()
-                    .with("Vertices", &piece.vertices)
-                    .with("Triangles", &piece.triangles)
+                    .with("vertices", &piece.vertices)
+                    .with("triangles", &piece.triangles)
                     .build(context.shaders)?,
             };
             passes.push((pass, piece.first_triangle, piece.triangle_count, vertices_a_triangle));
@@ -56,8 +56,8 @@ impl Fragments {
         stages
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
-            .with("Vertices", &piece.vertices)
-            .with("Triangles", &piece.triangles)
+            .with("vertices", &piece.vertices)
+            .with("triangles", &piece.triangles)
             .with("Objects", &scene.objects)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)

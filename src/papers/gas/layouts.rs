@@ -1,8 +1,6 @@
 //! Host structs against the blocks of buffers that hold them.
 
-use super::blocks::{
-    CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock,
-};
+use super::blocks::{CountersBlock, CountsBlock, FrameBlock, GridBlock, LightBlock, ObjectBlock, VolumeBlock};
 use super::progress::UnfinishedBlock;
 use crate::papers::layout::{check_block, check_list};
 
@@ -20,7 +18,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<GridBlock>("gas/volume-traced-trilinear-kept-one.comp", "Grids");
     check_list::<LightBlock>("gas/volume-traced-functions-kept-one.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
-    check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
     check_block::<CountsBlock>("gas/resolve-none-one.comp", "counts");
     check_block::<UnfinishedBlock>("gas/sort-one.comp", "Unfinished");
     check_block::<CountersBlock>("gas/sort-one.comp", "Counters");

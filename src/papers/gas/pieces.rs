@@ -1,4 +1,4 @@
-//! The triangles of all objects, in pieces that the device's storage buffers hold: one, but of the largest meshes.
+//! The triangles of all objects, in pieces that the device's buffers and images hold: one, but of the largest meshes.
 
 use std::sync::Arc;
 
@@ -7,15 +7,15 @@ use ash::vk;
 use super::blocks::{TriangleBlock, VertexBlock};
 use super::context::Context;
 use super::model::Object;
-use crate::gpu::transfer::upload_each;
-use crate::gpu::{Buffer, Error};
+use crate::gpu::{Error, ImageView};
+use crate::papers::texels;
 
 /// Some triangles with the vertices that they use.
 pub struct Piece {
     /// [`VertexBlock`]s.
-    pub vertices: Arc<Buffer>,
+    pub vertices: Arc<ImageView>,
     /// [`TriangleBlock`]s, whose vertices are those of the piece.
-    pub triangles: Arc<Buffer>,
+    pub triangles: Arc<ImageView>,
     /// Triangles of the pieces before it.
     pub first_triangle: u32,
     /// Its own triangles.
@@ -25,11 +25,14 @@ pub struct Piece {
 /// Makes the pieces, at least one.
 ///
 /// # Errors
-/// [`Error::Limit`] for more triangles than have numbers, or a buffer that does not hold one; what Vulkan answers.
+/// [`Error::Limit`] for more triangles than have numbers, or an image that does not hold one; what Vulkan answers.
 pub fn pieces(context: &Context<'_>, objects: &[Object]) -> Result<Vec<Piece>, Error> {
     let device = context.shaders.device();
     let limits = &device.physical().limits;
-    let limit_bytes = u64::from(limits.max_storage_buffer_range).min(device.physical().max_buffer_bytes());
+    // What a device binds of a buffer it holds of an image as well, as long as that has no more rows than its images.
+    let limit_bytes = u64::from(limits.max_storage_buffer_range)
+        .min(device.physical().max_buffer_bytes())
+        .min(texels::bytes_of_rows(limits.max_image_dimension2_d));
     let total: usize = objects.iter().map(|object| object.mesh.triangle_count()).sum();
     // Vertices are numbered too, and there are at most three to a triangle that is drawn.
     let vertices: usize = objects.iter().map(|object| object.mesh.positions.len()).sum();
@@ -39,7 +42,7 @@ pub fn pieces(context: &Context<'_>, objects: &[Object]) -> Result<Vec<Piece>, E
         let limit = u64::from(u32::MAX) - 1;
         return Err(Error::Limit { object: context.name("triangles"), what, wanted, limit }.set_by("object"));
     }
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let (floats, numbers) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R32G32B32A32_UINT);
     let mut pieces: Vec<Piece> = Vec::new();
     let mut cutting = Cutting::new(objects, limit_bytes);
     while pieces.is_empty() || !cutting.is_done() {
@@ -49,8 +52,8 @@ pub fn pieces(context: &Context<'_>, objects: &[Object]) -> Result<Vec<Piece>, E
         let number = if pieces.is_empty() { String::new() } else { format!("-{}", pieces.len()) };
         let name = |what: &str| context.name(&format!("{what}{number}"));
         let piece = (
-            upload_each(device, &name("vertices"), usage, vertices.len(), |at| cutting.vertex(vertices[at])),
-            upload_each(device, &name("triangles"), usage, triangles.len(), |at| triangles[at]),
+            texels::upload_list(device, &name("vertices"), floats, vertices.len(), |at| cutting.vertex(vertices[at])),
+            texels::upload_list(device, &name("triangles"), numbers, triangles.len(), |at| triangles[at]),
         );
         pieces.push(Piece {
             vertices: piece.0.map_err(|error| error.set_by("object"))?,

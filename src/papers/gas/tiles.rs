@@ -94,8 +94,8 @@ impl Scope<'_> {
         self.pass(name, shader)
             .with("Objects", &self.scene.objects)
             .with("TileTriangles", self.triangles)
-            .with("Vertices", &piece.vertices)
-            .with("Triangles", &piece.triangles)
+            .with("vertices", &piece.vertices)
+            .with("triangles", &piece.triangles)
             .with("counts", &self.scene.counts)
     }
 }
@@ -208,7 +208,7 @@ impl PieceOfTiles {
     /// The same passes for another piece.
     fn rebound(&self, context: &Context<'_>, piece: &Piece) -> Result<Self, Error> {
         let rebound = |pass: &Pass| {
-            let pass = pass.rebind().with("Vertices", &piece.vertices).with("Triangles", &piece.triangles);
+            let pass = pass.rebind().with("vertices", &piece.vertices).with("triangles", &piece.triangles);
             pass.build(context.shaders)
         };
         Ok(PieceOfTiles {

@@ -11,8 +11,8 @@ use crate::papers::gas::pieces::Piece;
 pub(super) fn tiles_count(shaders: &ShaderLibrary, scope: &Scope<'_>, piece: &Piece) -> Result<Pass, Error> {
     scope
         .pass("tiles-count", "gas/tiles-count.comp")
-        .with("Vertices", &piece.vertices)
-        .with("Triangles", &piece.triangles)
+        .with("vertices", &piece.vertices)
+        .with("triangles", &piece.triangles)
         .with("Objects", &scope.scene.objects)
         .with("Counters", &scope.lists.counters)
         .build(shaders)

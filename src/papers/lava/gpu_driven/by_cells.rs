@@ -6,9 +6,7 @@ use ash::vk;
 
 use super::super::targets::{Context, FLOATS};
 use crate::gpu::{Error, Image, ImageDesc, ImageView};
-
-/// Texels in a row, as in `lava/by-cells.glsl`: every device has so long rows.
-pub const ROW: u32 = 1 << 12;
+use crate::papers::texels::ROW;
 
 /// One with a texel for each particle.
 ///

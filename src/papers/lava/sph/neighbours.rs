@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::super::estimate::TEXEL;
-use super::super::gpu_driven::by_cells::{ROW, texture_of_rows};
+use super::super::gpu_driven::by_cells::texture_of_rows;
 use super::super::gpu_driven::sort::Sort;
 use super::super::targets::Context;
 use super::over_places;
@@ -14,6 +13,7 @@ use super::sph_neighbours_predicted::sph_neighbours_predicted;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, ImageView, Pass};
+use crate::papers::texels::{self, ROW};
 
 /// Particles of a list, as in `lava/sph.glsl`.
 const LISTED: u32 = 96;
@@ -48,7 +48,7 @@ pub fn listed(particles: u32) -> u32 {
 /// Bytes of so many particles' lists and drags, and of the five textures by cells.
 pub fn bytes(particles: u32) -> f64 {
     let rows = 2 * listed(particles).div_ceil(LISTS_OF_ROW) + 5 * particles.div_ceil(ROW);
-    TEXEL * f64::from(ROW) * f64::from(rows) + 4.0 * f64::from(particles)
+    texels::bytes_of_rows(rows) as f64 + 4.0 * f64::from(particles)
 }
 
 /// Particles that a pass looks at, for so many, where each that has no list looks at some.

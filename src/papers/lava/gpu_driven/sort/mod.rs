@@ -18,7 +18,6 @@ use self::cell_starts::cell_starts;
 use self::sort_count::sort_count;
 use self::sort_scatter::sort_scatter;
 use self::sort_sum::sort_sum;
-use super::super::estimate::TEXEL;
 use super::super::targets::Context;
 use super::by_cells;
 use super::cells::Cells;
@@ -26,6 +25,7 @@ use super::density;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
+use crate::papers::texels;
 
 host_block! {
     struct CellConstants {
@@ -110,7 +110,7 @@ impl Counts {
 /// Bytes of all that the sort has.
 pub fn bytes(cells: &Cells) -> f64 {
     let words = f64::from(Counts::of(cells.particles).third_sum) + 1.0;
-    let places = TEXEL * f64::from(by_cells::ROW) * f64::from(cells.particles.div_ceil(by_cells::ROW));
+    let places = texels::bytes_of(f64::from(cells.particles));
     16.0 * f64::from(cells.particles) + places + 4.0 * words + 4.0 * (f64::from(cells.count()) + 1.0)
 }
 
