@@ -3,7 +3,8 @@
 // Least width of a triangle in texels: a thinner one has no area that can be told from rounding.
 const float LEAST_WIDTH = 0.1;
 
-// Widens a triangle that is thinner, along its longest side or where it is a point; its turn is kept.
+// Widens a triangle that is thinner, along its longest side or where it is a point; its turn and its middle are kept, so that a border
+// takes no more light than it gives.
 void widen(inout vec2 p, inout vec2 q, inout vec2 r) {
     vec2 to_q = q - p;
     vec2 to_r = r - p;
@@ -12,6 +13,7 @@ void widen(inout vec2 p, inout vec2 q, inout vec2 r) {
     if (twice_area * twice_area >= LEAST_WIDTH * LEAST_WIDTH * longest && longest >= LEAST_WIDTH * LEAST_WIDTH) {
         return;
     }
+    vec2 sum = p + q + r;
     // The side from p to q becomes the longest; the three go round as they went.
     for (int i = 0; i < 2; i++) {
         if (dot(q - p, q - p) < longest) {
@@ -27,6 +29,10 @@ void widen(inout vec2 p, inout vec2 q, inout vec2 r) {
     q = p + direction * max(along, LEAST_WIDTH);
     float width = dot(r - p, across);
     r += across * ((width < 0.0 ? min(width, -LEAST_WIDTH) : max(width, LEAST_WIDTH)) - width);
+    vec2 back = (sum - (p + q + r)) / 3.0;
+    p += back;
+    q += back;
+    r += back;
 }
 
 // Signed, positive for a triangle that turns from x to y.

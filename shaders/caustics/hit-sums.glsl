@@ -1,10 +1,9 @@
-// Light on the map's texels in units of 2^-18 of I_c, 64 bits a texel: sums of whole numbers are the same in any order (section 6.3).
+// Light on the map's texels in whole units, so many to an I_c of 1, 64 bits a texel: sums of whole numbers are the same in any order
+// (section 6.3).
 
 layout(std430, set = 0, binding = 6) buffer Sums {
     uint list[]; // low and high word of each texel, row by row, surface below surface
 } sums;
-
-const float UNITS = 262144.0;
 
 uint low_word(ivec2 texel, int layer) {
     return 2u * uint((layer * int(plane.map_size) + texel.y) * int(plane.map_size) + texel.x);
@@ -13,8 +12,8 @@ uint low_word(ivec2 texel, int layer) {
 // True where the texel's low word is full, and its high word has to be told so.
 bool add_low(ivec2 texel, int layer, float light) {
     uint at = low_word(texel, layer);
-    // A triangle's light in one texel: 16,383 texels' worth at the most.
-    uint units = uint(min(light, 16383.0) * UNITS + 0.5);
+    // A cell's light in one texel: a word's numbers at the most.
+    uint units = uint(min(light * plane.units, 4294967040.0) + 0.5);
     return units > 0u && atomicAdd(sums.list[at], units) > 0xffffffffu - units;
 }
 

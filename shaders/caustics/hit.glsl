@@ -22,6 +22,7 @@ layout(push_constant) uniform Hits {
     float shadow_middle; // height of that box's centre along V, from the reference point, metres
     float shadow_top; // of its top
     uint columns; // vertices of the refined water along x
+    float units; // of light that is added up, of an I_c of 1
 } plane;
 
 layout(std430, set = 0, binding = 0) readonly buffer Heights {

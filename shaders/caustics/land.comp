@@ -139,7 +139,7 @@ Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, Landing a, Landing b, Landing c, 
     vec2 low = min(a.place.xy, min(b.place.xy, c.place.xy));
     vec2 high = max(a.place.xy, max(b.place.xy, c.place.xy));
     float size = float(plane.map_size);
-    bool misses = any(greaterThanEqual(low, vec2(size))) || any(lessThan(high, vec2(0.0)));
+    bool misses = any(greaterThanEqual(low, vec2(size + LEAST_WIDTH))) || any(lessThan(high, vec2(-LEAST_WIDTH)));
     if (least < -1.5 || (least >= 0.0 && misses)) {
         return whole;
     }

@@ -44,6 +44,7 @@ host_block! {
         shadow_middle: f32,
         shadow_top: f32,
         columns: u32,
+        units: f32,
     }
 }
 
@@ -51,6 +52,7 @@ host_block! {
     struct MapConstants {
         map_size: u32,
         layer: u32,
+        units: f32,
     }
 }
 
@@ -230,7 +232,7 @@ impl HitMap {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         let constants = HitConstants { absorption_per_m, ..self.constants };
-        let HitConstants { map_size, triangles, vertices, .. } = constants;
+        let HitConstants { map_size, triangles, vertices, units, .. } = constants;
         self.position_pyramid.record(frame)?;
         empty_sums::record(&self.empty_sums, frame, map_size, self.caustics_maps.len() as u32)?;
         let sharing = straddle::threads(triangles);
@@ -240,7 +242,7 @@ impl HitMap {
         }
         (0..).zip(&self.caustics_maps).try_for_each(|(layer, pass)| {
             frame.graphics(pass, |draw| {
-                draw.constants(&MapConstants { map_size, layer }).vertices(3);
+                draw.constants(&MapConstants { map_size, layer, units }).vertices(3);
             })
         })
     }
@@ -254,6 +256,12 @@ fn sum_words(context: Context<'_>, surfaces: u32) -> Result<u32, Error> {
         let object = context.name("landed-light");
         Error::Limit { object, what: "words of light", wanted, limit }.set_by("map-size")
     })
+}
+
+/// Units of light that is added up, to an I_c of 1: more where cells of the water are so small beside a texel, of which they
+/// cover `cell_texels`, that the light of one would be rounded too coarsely.
+fn units(cell_texels: f64) -> f64 {
+    (10.0 - cell_texels.log2()).ceil().clamp(18.0, 56.0).exp2()
 }
 
 fn constants(
@@ -278,6 +286,7 @@ fn constants(
         up: volumes.axes.along(DVec3::Y).as_vec3().to_array(),
         receiver: lit.index as f32,
         columns: water.grid.columns + 1,
+        units: units(water.grid.cell.element_product() * (texels / extent.x) * (texels / extent.z)) as f32,
         ..bytemuck::Zeroable::zeroed()
     };
     if let Some(shadow) = shadows {

@@ -274,6 +274,25 @@ fn triangles_cover_texels_by_area() {
     });
 }
 
+/// However little of a texel's light each triangle brings.
+#[test]
+fn texels_take_the_light_of_a_million_triangles() {
+    gpu_test(|device| {
+        let mean = |map_size, water_triangles| {
+            let parameters = Parameters { map_size, water_triangles, ..parameters(OVERHEAD) };
+            let drawing = Drawing::of(device, Variant::Hit, &parameters, &[floor()]);
+            let map = drawing.target("caustics-map");
+            map.iter().copied().map(f64::from).sum::<f64>() / map.len() as f64
+        };
+        let expected = mean(64, 10_000);
+        for (map_size, water_triangles) in [(1, 300_000), (1, 1_000_000), (2, 1_500_000)] {
+            let found = mean(map_size, water_triangles);
+            println!("{map_size} texels a side, {water_triangles} triangles: {found:.4}, {expected:.4}");
+            assert!((found / expected - 1.0).abs() < 0.01, "{found} of {expected}");
+        }
+    });
+}
+
 /// I_c on the floor at a place under gentle water and light from overhead, by the exact water: the ray that lands there is found by
 /// steps, and the areas by differences of its neighbours.
 fn exact_light(surface: &impl Fn(f64, f64) -> WaterVertex, oracle: &Oracle, floor_m: f64, place: DVec2) -> f64 {
