@@ -147,12 +147,17 @@ void main() {
     part.extent = sqrt(0.5 * (own_inertia[0][0] + own_inertia[1][1] + own_inertia[2][2]));
     vec3 at = axes * center + part.offset;
     bool is_standing = stands(index, at);
-    if (part.rests != 0.0 && is_standing) {
+    uint groups = (constants.vertex_count + GROUP * moving[1] - 1u) / (GROUP * moving[1]);
+    if (part.rests != 0.0) {
+        // Of what lies still no contacts are asked: it begins to fall in the next tick, in which they are known.
+        part.rests = is_standing ? 1.0 : 0.0;
         part.energy = GRAVITY * (at.y - constants.floor_y);
         parts[index] = part;
+        if (!is_standing) {
+            moving[0] = groups;
+        }
         return;
     }
-    part.rests = 0.0;
     part.fallen_ticks += 1.0;
     mat3 inertia = axes * own_inertia * transpose(axes);
     mat3 inverse_inertia = inverse(inertia);
@@ -250,5 +255,5 @@ void main() {
     part.spin = spin;
     part.energy = now;
     parts[index] = part;
-    moving[0] = (constants.vertex_count + GROUP * moving[1] - 1u) / (GROUP * moving[1]);
+    moving[0] = groups;
 }

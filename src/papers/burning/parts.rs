@@ -170,8 +170,7 @@ impl Parts {
         let searched = |name: &str| step(name).with("Searching", &progress);
         let state = new("NewState", &buffers.states);
         let rotations = new("NewRotations", &buffers.rotations);
-        let placed =
-            |name: &str| step(name).with("Cells", &buffers.cells).with("Parts", &parts).with("Bends", &bends);
+        let placed = |name: &str| step(name).with("Cells", &buffers.cells).with("Parts", &parts).with("Bends", &bends);
         let inherit = placed("inherit")
             .with("Searching", &progress)
             .with("Roots", &roots)

@@ -3,6 +3,9 @@
 use super::Burning;
 use super::parameters::{TICKS_PER_S, Variant};
 
+/// Diagonals by which a solid chars at least that is to be seen to do so.
+const SHALLOWEST: f32 = 1e-3;
+
 /// Of the object, and of a fire that has not come to it by the last tick.
 pub fn warnings(paper: &Burning) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -16,6 +19,12 @@ pub fn warnings(paper: &Burning) -> Vec<String> {
              burn it as `shell`"
                 .to_owned(),
         );
+    } else if paper.variant == Variant::Solid && paper.model.char_depth < SHALLOWEST {
+        warnings.push(format!(
+            "the mesh encloses next to nothing: a solid chars as deep as three quarters of its volume over its surface, {} \
+             diagonals here; burn it as `shell`",
+            paper.model.char_depth
+        ));
     }
     let nearest = paper.model.rest.iter().map(|vertex| vertex.boundary_distance).fold(f32::INFINITY, f32::min);
     let radius = paper.parameters.speed_per_s * (paper.ticks() as f64 / TICKS_PER_S) as f32;

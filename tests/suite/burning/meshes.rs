@@ -8,7 +8,7 @@ use fumarole::measure::{Paper, Variant as _};
 use fumarole::papers::burning::model::{Model, with_triangles};
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
-use glam::{UVec2, Vec2, Vec3};
+use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use super::fire::{Fire, quick, text};
 use crate::common::gpu_test;
@@ -189,6 +189,20 @@ fn an_open_mesh_as_a_solid_is_told() {
         ] {
             let fire = Fire::new(device, variant, &quick(), &mesh);
             assert_eq!(fire.paper.warnings().iter().any(|w| w.contains("not closed")), is_told, "{variant:?}");
+        }
+    });
+}
+
+#[test]
+fn a_solid_that_encloses_nothing_is_told() {
+    gpu_test(|device| {
+        let thin = |height: f32| shapes::cuboid().transformed(&Mat4::from_scale(Vec3::new(1.0, height, 1.0)));
+        for (variant, height, is_told) in
+            [(Variant::Solid, 1e-4, true), (Variant::Solid, 0.1, false), (Variant::Shell, 1e-4, false)]
+        {
+            let fire = Fire::new(device, variant, &quick(), &thin(height));
+            let warnings = fire.paper.warnings();
+            assert_eq!(warnings.iter().any(|w| w.contains("next to nothing")), is_told, "{variant:?}: {warnings:?}");
         }
     });
 }

@@ -97,12 +97,12 @@ impl Body {
         (0..DIRECTIONS).map(direction).all(|d| feet.iter().any(|p| d.dot(*p - at) >= -MARGIN))
     }
 
-    /// The part 1/60 s later. Answers also by how much its contacts were chosen, in lengths.
+    /// The part 1/60 s later; what lies still begins to fall with the next step. Answers also by how much its contacts were chosen, in lengths.
     pub fn step(&self, places: &[DVec3], weights: &[f64], floor: f64) -> (Body, f64) {
         let (center, own) = moments(places, weights);
         let stands = self.stands(places, center, floor);
-        if self.rests && stands {
-            return (*self, f64::INFINITY);
+        if self.rests {
+            return (Body { rests: stands, ..*self }, f64::INFINITY);
         }
         let dt = 1.0 / RATE;
         let mut next = Body { rests: false, velocity: self.velocity - DVec3::Y * GRAVITY * dt, ..*self };
