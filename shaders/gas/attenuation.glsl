@@ -43,6 +43,7 @@ void main() {
         covered = before.a.y;
         is_shown_through = before.a.z != 0u;
         l = before.a.w;
+        take_up(before.b, before.c);
     } else {
         f = fragment_at(heads[list]);
     }
@@ -71,7 +72,7 @@ void main() {
                     attenuations[f * light_count + l] = 1.0 - passed;
                     l++;
                 }
-            } while (l < light_count && !is_cut);
+            } while (all(bvec2(l < light_count, !is_cut)));
         }
         is_stopped = is_done || is_cut || (is_seen && l < light_count);
         if (!is_stopped) {
@@ -92,7 +93,7 @@ void main() {
             made++;
             is_stopped = made >= MOST_MADE;
         }
-    } while (!is_done && !is_stopped);
+    } while (all(bvec2(!is_done, !is_stopped)));
     uvec4 state = uvec4(f, covered, uint(is_shown_through), l);
-    leave(LIGHT_ATTENUATION, list, is_done, before, State(state, uvec4(0u), uvec3(0u)));
+    leave(LIGHT_ATTENUATION, list, is_done, before, State(state, first_left(), second_left()));
 }

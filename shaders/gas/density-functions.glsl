@@ -51,6 +51,7 @@ float gas_density(vec3 world) {
     float value = 0.0;
     uint i = 0u;
     bool is_clear = false;
+    bool is_whole = false;
     do {
         bool is_last = i == last;
         value = fractal(p, kind == CLOUDS && !is_last);
@@ -67,9 +68,12 @@ float gas_density(vec3 world) {
         } else if (!is_last) {
             p += vec3(helix.x + value, value - number * in_hand.along_per_frame, helix.y + value);
         }
+        if (is_last || is_clear) {
+            is_whole = true;
+        }
         i++;
-    } while (i <= last && !is_clear);
-    is_cut = is_cut || (i <= last && !is_clear);
+    } while (all(bvec2(i <= last, !is_clear)));
+    is_cut = is_cut || !is_whole;
     if (is_clear) {
         return 0.0;
     }

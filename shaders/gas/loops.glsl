@@ -2,7 +2,9 @@
 // run in step; then every loop ends with the iteration that it is in, without a word. So every loop whose length follows
 // from the input, or that stands beside such a one, finds out from its own state, and nothing is kept of what it began.
 // Such a loop is left by its condition alone: behind one that has a second way out, what it leaves through that way may
-// not be up to date when the driver ends it.
+// not be up to date when the driver ends it. Terms of a condition are joined by `all` and `any`: a compiler makes a way out of each
+// that `&&` or `||` joins. What is asked behind a loop is a number or a flag that is set under an `if` in it: what follows from others
+// may be computed there anew, a turn too far, and what the loop was left by is taken as known.
 //
 // It asks at its end where it can: lavapipe does what follows a condition also where no thread holds it, `if` or loop, so that a
 // loop that asks first goes through its body once more than any thread wants, and through all loops in it. There it also computes

@@ -7,6 +7,41 @@
 
 #include "gas/random.glsl"
 
+// A way that a dispatch does not follow to its end, and the next one goes on with.
+struct Way {
+    float at_m;
+    uint draws; // of its numbers
+    uint parts;
+    bool is_met; // by a real particle, whose lights it asks
+    uint light; // the next one
+    vec3 emission; // of those before it
+};
+
+const Way NEW_WAY = Way(0.0, 0u, 0u, false, 0u, vec3(0.0));
+
+Way way = NEW_WAY;
+
+void take_up(uvec4 first, uvec4 second) {
+    uint parts = first.z & 0x1ffffu;
+    bool is_met = (first.z & 0x800000u) != 0u;
+    way = Way(uintBitsToFloat(first.x), first.y, parts, is_met, first.z >> 20u & 7u, uintBitsToFloat(second.xyz));
+    if (is_met) {
+        light_way = LightWay(uintBitsToFloat(first.w), uintBitsToFloat(second.w), first.z >> 17u & 7u, parts);
+    }
+}
+
+uvec4 first_left() {
+    uint numbers = way.parts;
+    if (way.is_met) {
+        numbers = light_way.parts | light_way.volume << 17u | way.light << 20u | 0x800000u;
+    }
+    return uvec4(floatBitsToUint(way.at_m), way.draws, numbers, floatBitsToUint(light_way.passed));
+}
+
+uvec4 second_left() {
+    return floatBitsToUint(vec4(way.emission, light_way.at_m));
+}
+
 void take_pixel(uvec2 pixel, uint pixel_index) {}
 
 void read_scene() {
@@ -41,27 +76,36 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     Gas gas = begun;
     gas.evaluations = 0u;
     do {
-        begin_way(pixel_index, first_number + gas.increments);
-        float at_m = 0.0;
+        begin_way(pixel_index, first_number + gas.increments, way.draws);
         vec3 color = vec3(0.0);
         float transparency = 1.0;
-        uint evaluations = 0u;
         bool is_over = false;
-        uint parts = 0u;
         do {
-            vec3 point = entry + direction * at_m;
-            Flight flight = Flight(0.0, length_m - at_m);
-            for (v = 0u; v < volume_count; v++) {
-                if (is_in[v]) {
-                    take_volume(v);
-                    flight = through(flight, point, direction);
-                }
+            if (way.parts >= MOST_MADE) {
+                is_cut = true; // for good: no dispatch gets it further
             }
-            is_cut = is_cut || v < volume_count;
-            float free_m = free_way(flight);
-            at_m += min(free_m, flight.clear_m);
-            is_over = free_m >= flight.clear_m && at_m >= length_m;
-            if (free_m < flight.clear_m) {
+            vec3 point = entry + direction * way.at_m;
+            float at_m = way.at_m;
+            float bound = 0.0;
+            bool is_real = way.is_met;
+            bool has_particle = is_real;
+            if (!is_real) {
+                Flight flight = Flight(0.0, length_m - at_m);
+                for (v = 0u; v < volume_count; v++) {
+                    if (is_in[v]) {
+                        take_volume(v);
+                        flight = through(flight, point, direction);
+                    }
+                }
+                is_cut = is_cut || v < volume_count;
+                float free_m = free_way(flight);
+                at_m += min(free_m, flight.clear_m);
+                is_over = free_m >= flight.clear_m && at_m >= length_m;
+                has_particle = free_m < flight.clear_m;
+                bound = flight.bound;
+            }
+            uint evaluations = 0u;
+            if (has_particle) {
                 point = entry + direction * at_m;
                 float densities[MAX_VOLUMES];
                 float previous[MAX_VOLUMES];
@@ -80,7 +124,11 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     }
                 }
                 is_cut = is_cut || v < volume_count;
-                if (drawn() * flight.bound < extinction) {
+                is_real = way.is_met || drawn() * bound < extinction;
+                if (is_real) {
+                    if (!is_cut && !way.is_met) {
+                        way = Way(at_m, way_draws, 0u, true, 0u, vec3(0.0));
+                    }
                     for (v = 0u; v < volume_count; v++) {
                         take_volume(v);
                         if (densities[v] > 0.0 && in_hand.is_solid != 0u) {
@@ -99,31 +147,50 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                                 } else {
                                     aboves[v] = density;
                                 }
-                                place++;
+                                if (place < 3u) {
+                                    place++;
+                                }
                             } while (place < 3u);
                             is_cut = is_cut || place < 3u;
                             evaluations += 3u;
                         }
                     }
                     is_cut = is_cut || v < volume_count;
-                    vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
+                    uint l = way.light;
+                    vec3 emission = l == 0u ? own_emission(point, densities) : way.emission;
+                    do {
+                        emission += emission_by(l, point, frames, densest, apart, densities, previous, asides, aboves);
+                        if (way.is_met) {
+                            way.draws = way_draws;
+                        }
+                        if (!is_cut) {
+                            l++;
+                            way.light = l;
+                            way.emission = emission;
+                        }
+                    } while (all(bvec2(l < light_count, !is_cut)));
+                    is_cut = is_cut || l < light_count;
                     color = emission / extinction;
                     transparency = 0.0;
                     is_over = true;
                 }
             }
-            parts++;
-        } while (!is_over && !is_cut && parts < MOST_MADE);
+            if (!is_cut) {
+                gas.evaluations += evaluations;
+                if (!is_real) {
+                    way = Way(at_m, way_draws, way.parts + 1u, false, 0u, vec3(0.0));
+                }
+            }
+        } while (all(bvec3(!is_over, !is_cut, made < MOST_MADE)));
         is_cut = is_cut || !is_over;
-        // Nothing is kept of a way that was not followed to its end.
         if (!is_cut) {
+            way = NEW_WAY;
             gas.increments++;
             float part = 1.0 / float(gas.increments);
             gas.color = mix(gas.color, color, part);
             gas.transparency = mix(gas.transparency, transparency, part);
-            gas.evaluations += evaluations;
             gas.is_done = gas.increments >= sample_count;
         }
-    } while (!gas.is_done && !is_cut && made < MOST_MADE);
+    } while (all(bvec3(!gas.is_done, !is_cut, made < MOST_MADE)));
     return gas;
 }

@@ -9,6 +9,17 @@ layout(set = 0, binding = 34) uniform texture3D froxel_sums;
 
 void take_pixel(uvec2 pixel, uint pixel_index) {}
 
+// No part of a section is left for another dispatch.
+void take_up(uvec4 first, uvec4 second) {}
+
+uvec4 first_left() {
+    return uvec4(0u);
+}
+
+uvec4 second_left() {
+    return uvec4(0u);
+}
+
 void read_scene() {
     read_counts();
     read_volumes();

@@ -47,6 +47,17 @@ float place_in_part(uint number) {
     return place_of_ray >= 0.0 ? place_of_ray : float(h >> 8u) / 16777216.0;
 }
 
+// No part of an increment is left for another dispatch.
+void take_up(uvec4 first, uvec4 second) {}
+
+uvec4 first_left() {
+    return uvec4(0u);
+}
+
+uvec4 second_left() {
+    return uvec4(0u);
+}
+
 void read_scene() {
     read_counts();
     read_volumes();
@@ -126,7 +137,9 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     } else {
                         aboves[v] = density;
                     }
-                    i++;
+                    if (i < count) {
+                        i++;
+                    }
                 } while (i < count);
                 is_cut = is_cut || i < count;
                 evaluations += count;
@@ -170,6 +183,6 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
             }
             gas.is_done = float(gas.increments) * step_m >= length_m || before * gas.transparency < early;
         }
-    } while (!gas.is_done && !is_cut && made < MOST_MADE);
+    } while (all(bvec3(!gas.is_done, !is_cut, made < MOST_MADE)));
     return gas;
 }

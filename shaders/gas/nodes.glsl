@@ -21,11 +21,15 @@ Link link_at(uint fragment) {
 // The node itself, or the fragment after the sections that begin with it.
 uint fragment_at(uint node) {
     uint fragment = node;
+    bool is_found = false;
     do {
         if (fragment != NONE && is_section(fragment)) {
             fragment = sections[2u * (fragment & ~SECTION)].w;
         }
-    } while (fragment != NONE && is_section(fragment));
-    is_cut = is_cut || (fragment != NONE && is_section(fragment));
+        if (fragment == NONE || !is_section(fragment)) {
+            is_found = true;
+        }
+    } while (all(bvec2(fragment != NONE, is_section(fragment))));
+    is_cut = is_cut || !is_found;
     return fragment;
 }

@@ -45,7 +45,9 @@ float fractal(vec3 p, bool is_noise) {
         sum += is_noise ? value : abs(value) * scale;
         frequency *= 2.0;
         scale *= 0.5;
-        octave++;
+        if (octave < count) {
+            octave++;
+        }
     } while (octave < count);
     is_cut = is_cut || octave < count;
     return count > 0u ? sum : 0.0;

@@ -7,10 +7,10 @@
 uint way_key = 0u;
 uint way_draws = 0u;
 
-// The numbers of a way follow from its pixel and its number, whichever dispatch follows it.
-void begin_way(uint pixel_index, uint number) {
+// The numbers of a way follow from its pixel and its number, whichever dispatch follows it; so many of them were drawn before.
+void begin_way(uint pixel_index, uint number, uint draws) {
     way_key = scramble(pixel_index * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
-    way_draws = 0u;
+    way_draws = draws;
 }
 
 // Between 0 and 1, neither of them.
@@ -46,3 +46,15 @@ float free_way(Flight flight) {
     float depth = -log(drawn());
     return depth < flight.bound * flight.clear_m ? depth / flight.bound : 1.0e30;
 }
+
+// A way to the light in hand that a dispatch has not followed to its end, and the next one goes on with.
+struct LightWay {
+    float passed;
+    float at_m; // in the volume; negative before it
+    uint volume;
+    uint parts; // in the volume
+};
+
+const LightWay NEW_LIGHT_WAY = LightWay(1.0, -1.0, 0u, 0u);
+
+LightWay light_way = NEW_LIGHT_WAY;

@@ -76,7 +76,7 @@ void main() {
                     node = link.next;
                 }
             }
-        } while (node != NONE && transmittance > 0.0 && !is_met);
+        } while (all(bvec3(node != NONE, transmittance > 0.0, !is_met)));
         bool is_passed = node == NONE || transmittance <= 0.0;
         if (is_met && !is_passed) {
             uint narrowed = group & link.mask;
@@ -113,7 +113,9 @@ void main() {
                 float weight = i == 0u ? 1.0 - fraction : fraction;
                 uint f = i == 0u ? node : behind;
                 light += shaded(f, surface, material, color_of(at_node), depth_m, ray) * (taken * weight);
-                i++;
+                if (i < count) {
+                    i++;
+                }
             } while (i < count);
             // Nothing is kept of a fragment that was not shaded to its end.
             is_cut = is_cut || i < count;
@@ -136,7 +138,7 @@ void main() {
             node = head;
         }
         is_stopped = is_stopped || made >= MOST_MADE;
-    } while (remaining != 0u && !is_stopped);
+    } while (all(bvec2(remaining != 0u, !is_stopped)));
     imageStore(radiance, ivec2(pixel), vec4(color, opacity));
     uvec4 place = uvec4(remaining, group, node, floatBitsToUint(transmittance));
     uvec4 sums = uvec4(floatBitsToUint(group_color), floatBitsToUint(opacity));

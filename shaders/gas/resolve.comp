@@ -99,7 +99,7 @@ void main() {
                 is_met = (link.mask & left) != 0u || lent > 0.0;
                 node = is_met ? node : link.next;
             }
-        } while (node != NONE && (left != 0u || lent > 0.0) && !is_met);
+        } while (all(bvec3(node != NONE, any(bvec2(left != 0u, lent > 0.0)), !is_met)));
         is_passed = node == NONE || (left == 0u && lent <= 0.0);
         if (is_met && !is_passed) {
             Surface surface = surface_at(node);
@@ -131,7 +131,7 @@ void main() {
         }
         is_stopped = is_cut || made >= MOST_MADE || (!is_passed && !is_met);
         is_passed = is_passed || node == NONE || (left == 0u && lent <= 0.0);
-    } while (!is_passed && !is_stopped);
+    } while (all(bvec2(!is_passed, !is_stopped)));
     float through = sum_of(clear);
     vec3 seen_color = (color + frame.background * through) / 32.0;
     imageStore(radiance, ivec2(pixel), vec4(seen_color, 1.0 - through / 32.0));

@@ -84,16 +84,19 @@ void main() {
         number = before.b.x;
         transparency = uintBitsToFloat(before.b.y);
         evaluations = reserved.evaluations;
+        uint slot = reserved.first_section + used;
         if (before.b.z > 0u) {
-            vec4 light = uintBitsToFloat(sections[2u * (reserved.first_section + used) + 1u]);
+            vec4 light = uintBitsToFloat(sections[2u * slot + 1u]);
             begun = Gas(light.xyz, light.w, before.b.z, 0u, false);
         }
+        take_up(uvec4(before.b.w, before.c), sections[2u * slot]);
     }
     bool is_done = depth >= end || used >= reserved.section_count;
     bool is_stopped = false;
     do {
         float next = end;
         bool is_found = false;
+        bool is_over = false; // found, or there is none
         do {
             if (fragment != NONE) {
                 uvec4 link = links[fragment];
@@ -106,7 +109,10 @@ void main() {
                     fragment = link.x;
                 }
             }
-        } while (fragment != NONE && !is_found);
+            if (fragment == NONE || is_found) {
+                is_over = true;
+            }
+        } while (all(bvec2(fragment != NONE, !is_found)));
         bool has_gas = false;
         bool has_more = false;
         for (v = 0u; v < volume_count; v++) {
@@ -120,7 +126,7 @@ void main() {
                 }
             }
         }
-        is_stopped = is_cut || (fragment != NONE && !is_found) || v < volume_count;
+        is_stopped = is_cut || !is_over || v < volume_count;
         is_done = is_done || (!is_stopped && (!has_more || next <= depth));
         if (!is_stopped && !is_done) {
             if (has_gas) {
@@ -133,10 +139,10 @@ void main() {
                 }
                 evaluations += gas.evaluations;
                 uint slot = reserved.first_section + used;
-                vec3 place = vec3(depth, next, float(gas.increments));
-                sections[2u * slot] = uvec4(floatBitsToUint(place), fragment);
-                sections[2u * slot + 1u] = floatBitsToUint(vec4(gas.color, gas.transparency));
                 is_stopped = !gas.is_done;
+                vec3 place = vec3(depth, next, float(gas.increments));
+                sections[2u * slot] = is_stopped ? second_left() : uvec4(floatBitsToUint(place), fragment);
+                sections[2u * slot + 1u] = floatBitsToUint(vec4(gas.color, gas.transparency));
                 if (is_stopped) {
                     begun = gas;
                 } else {
@@ -154,10 +160,11 @@ void main() {
                 is_done = is_done || depth >= end || used >= reserved.section_count;
             }
         }
-    } while (!is_done && !is_stopped);
+    } while (all(bvec2(!is_done, !is_stopped)));
     uint made_sections = is_done ? used : reserved.section_count;
     pixels[list] = uvec4(reserved.first_section, made_sections, floatBitsToUint(end), evaluations);
     uvec4 place = uvec4(floatBitsToUint(depth), fragment, previous, used);
-    State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, 0u), uvec3(0u));
+    uvec4 first = first_left();
+    State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, first.x), first.yzw);
     leave(VOLUME, list, is_done, before, state);
 }

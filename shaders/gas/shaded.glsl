@@ -34,7 +34,9 @@ vec3 shaded(uint f, Surface surface, Material material, vec3 color, float depth_
             float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
             sum += light * (albedo * facing + material.highlight_strength * pow(mirrored, material.highlight_exponent));
         }
-        l++;
+        if (l < light_count) {
+            l++;
+        }
     } while (l < light_count);
     is_cut = is_cut || l < light_count;
     return sum;

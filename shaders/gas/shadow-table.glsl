@@ -31,7 +31,9 @@ float optical_depth_to(uint l, vec3 point) {
         if (segment.x <= segment.y) {
             sum += in_hand.tau_per_m * table_value(l, point + to_light.direction * segment.x);
         }
-        v++;
+        if (v < volume_count) {
+            v++;
+        }
     } while (v < volume_count);
     is_cut = is_cut || v < volume_count;
     return sum;

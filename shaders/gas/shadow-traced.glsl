@@ -26,7 +26,9 @@ float optical_depth_to_light(vec3 point) {
             } else if (count > 0u) {
                 in_volume += volume_density(center) * increment;
             }
-            i++;
+            if (i < count) {
+                i++;
+            }
         } while (i < count);
         is_cut = is_cut || i < count;
         sum += in_hand.tau_per_m * in_volume;

@@ -26,7 +26,9 @@ float mean_density(vec3 point, vec3 facing, vec3 ray, float depth) {
         vec2 at = (part + 0.5) / parts - 0.5;
         part = part.x + 1.0 < parts.x ? part + vec2(1.0, 0.0) : vec2(0.0, part.y + 1.0);
         sum += clamp(gas_density(point + across * at.x + along * at.y), 0.0, 1.0);
-        i++;
+        if (i < count) {
+            i++;
+        }
     } while (i < count);
     is_cut = is_cut || i < count;
     return sum / float(count);

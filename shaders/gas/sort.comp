@@ -63,55 +63,64 @@ struct Merge {
     bool is_parted; // q has its place, so that p and q are being merged
 };
 
-// Merges runs of 1, 2, 4, ... links until one run is left; true when it is.
+// Merges runs of 1, 2, 4, ... links until one run is left; true when it is. Else the next dispatch goes on.
 bool is_sorted(inout Merge m) {
     bool is_done = false;
-    bool is_stopped = false; // the next dispatch goes on
-    while (!is_done && !is_stopped) {
-        while (m.p != NONE && !is_stopped) {
-            while (!m.is_parted && m.p_left < m.run && m.q != NONE) {
-                m.p_left++;
-                m.q = links[m.q].x;
-            }
-            bool is_parted = m.is_parted || m.p_left == m.run || m.q == NONE;
-            if (is_parted && !m.is_parted) {
-                m.is_parted = true;
-                m.q_left = m.run;
-                m.merges++;
-            }
-            uvec4 p_link = links[m.p];
-            uvec4 q_link = m.q != NONE ? links[m.q] : uvec4(NONE);
-            while (m.is_parted && (m.p_left > 0u || (m.q_left > 0u && m.q != NONE))) {
-                bool take_p = m.p_left > 0u;
-                if (take_p && m.q_left > 0u && m.q != NONE) {
-                    take_p = !stands_before(m.q, q_link, m.p, p_link);
+    do {
+        if (m.p != NONE || m.is_parted) {
+            // To the run behind.
+            do {
+                if (!m.is_parted && m.p_left < m.run && m.q != NONE) {
+                    m.p_left++;
+                    m.q = links[m.q].x;
+                    made++;
                 }
-                uint taken = take_p ? m.p : m.q;
-                uint after = take_p ? p_link.x : q_link.x;
-                uvec4 link = after != NONE ? links[after] : uvec4(NONE);
-                if (take_p) {
-                    m.p = after;
-                    p_link = link;
-                    m.p_left--;
-                } else {
-                    m.q = after;
-                    q_link = link;
-                    m.q_left--;
+                if (!m.is_parted && (m.p_left == m.run || m.q == NONE)) {
+                    m.is_parted = true;
+                    m.q_left = m.run;
+                    m.merges++;
                 }
-                if (m.tail == NONE) {
-                    m.head = taken;
-                } else {
-                    links[m.tail].x = taken;
-                }
-                m.tail = taken;
+            } while (all(bvec2(!m.is_parted, made < MOST_MADE)));
+            bool is_merged = false;
+            if (m.is_parted) {
+                uvec4 p_link = m.p != NONE ? links[m.p] : uvec4(NONE);
+                uvec4 q_link = m.q != NONE ? links[m.q] : uvec4(NONE);
+                do {
+                    bool has_p = m.p_left > 0u;
+                    bool has_q = m.q_left > 0u && m.q != NONE;
+                    if (has_p || has_q) {
+                        bool take_p = has_p;
+                        if (has_p && has_q) {
+                            take_p = !stands_before(m.q, q_link, m.p, p_link);
+                        }
+                        uint taken = take_p ? m.p : m.q;
+                        uint after = take_p ? p_link.x : q_link.x;
+                        uvec4 link = after != NONE ? links[after] : uvec4(NONE);
+                        if (take_p) {
+                            m.p = after;
+                            p_link = link;
+                            m.p_left--;
+                        } else {
+                            m.q = after;
+                            q_link = link;
+                            m.q_left--;
+                        }
+                        if (m.tail == NONE) {
+                            m.head = taken;
+                        } else {
+                            links[m.tail].x = taken;
+                        }
+                        m.tail = taken;
+                        made++;
+                    } else {
+                        is_merged = true;
+                    }
+                } while (all(bvec2(!is_merged, made < MOST_MADE)));
             }
-            is_stopped = !m.is_parted || m.p_left > 0u || (m.q_left > 0u && m.q != NONE);
-            if (!is_stopped) {
-                made += m.run;
+            if (is_merged) {
                 m.p = m.q;
                 m.p_left = 0u;
                 m.is_parted = false;
-                is_stopped = made >= MOST_MADE;
             }
         }
         if (m.p == NONE && !m.is_parted) {
@@ -123,7 +132,7 @@ bool is_sorted(inout Merge m) {
                 m = Merge(NONE, NONE, m.head, m.head, 0u, 0u, m.run * 2u, 0u, false);
             }
         }
-    }
+    } while (all(bvec2(!is_done, made < MOST_MADE)));
     return is_done;
 }
 
@@ -290,12 +299,15 @@ void main() {
     }
     if (phase == COVERING) {
         uint farthest = NONE;
-        while (f != NONE && covered != 0xffffffffu) {
-            uvec2 link = links[f].xy;
-            covered |= opacity_of(Color(0u, colors[f].y)) >= 1.0 ? link.y : 0u;
-            farthest = f;
-            f = link.x;
-        }
+        do {
+            if (f != NONE && covered != 0xffffffffu) {
+                uvec2 link = links[f].xy;
+                covered |= opacity_of(Color(0u, colors[f].y)) >= 1.0 ? link.y : 0u;
+                farthest = f;
+                f = link.x;
+                made++;
+            }
+        } while (all(bvec3(f != NONE, covered != 0xffffffffu, made < MOST_MADE)));
         if (covered == 0xffffffffu && farthest != NONE) {
             end = min(end, mean_depth_of(links[farthest]));
         }
@@ -307,26 +319,32 @@ void main() {
         vec2 extent = vec2(1.0e30, 0.0);
         uint ends = 0u;
         uint v = 0u;
-        for (; v < volume_count; v++) {
-            take_volume(v);
-            vec2 segment = intersect(volume_segment(frame.eye, ray), vec2(frame.hither_m, end));
-            if (segment.x < segment.y) {
-                extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
-                ends += 2u;
+        do {
+            if (v < volume_count) {
+                take_volume(v);
+                vec2 segment = intersect(volume_segment(frame.eye, ray), vec2(frame.hither_m, end));
+                if (segment.x < segment.y) {
+                    extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
+                    ends += 2u;
+                }
+                v++;
             }
-        }
+        } while (v < volume_count);
         if (v == volume_count) {
             if (phase == COVERING) {
                 phase = COUNTING;
                 f = ends > 0u && !is_one_run ? head : NONE;
                 cuts = ends + (ends > 0u && is_one_run ? count_between(run, extent) : 0u);
             }
-            while (f != NONE) {
-                uvec4 link = links[f];
-                float depth = mean_depth_of(link);
-                cuts += uint(depth > extent.x && depth < extent.y);
-                f = link.x;
-            }
+            do {
+                if (f != NONE) {
+                    uvec4 link = links[f];
+                    float depth = mean_depth_of(link);
+                    cuts += uint(depth > extent.x && depth < extent.y);
+                    f = link.x;
+                    made++;
+                }
+            } while (all(bvec2(f != NONE, made < MOST_MADE)));
             is_done = f == NONE;
         }
     }

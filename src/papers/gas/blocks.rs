@@ -195,7 +195,7 @@ host_block! {
 }
 
 host_block! {
-    /// A section of gas in a pixel's list.
+    /// A section of gas in a pixel's list; while `volume` is at it, its first four words are of the way in hand (`march-delta.glsl`).
     pub struct SectionBlock {
         near_m: f32,
         far_m: f32,

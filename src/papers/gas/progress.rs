@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use ash::vk;
+use bytemuck::Zeroable;
 
 use super::context::Context;
-use crate::gpu::transfer::{read_buffer, upload};
+use crate::gpu::transfer::{read_buffer, update, upload};
 use crate::gpu::{Buffer, Error, ShaderLibrary};
 use crate::{host_block, named};
 
@@ -89,7 +90,8 @@ impl Calls {
         self.0[pass as usize]
     }
 
-    /// More of those that left pixels unfinished; nothing where all are finished.
+    /// More of those that left pixels unfinished; nothing where all are finished. What follows on a pass that is unfinished is
+    /// not judged: a list that is half in order may have no end.
     ///
     /// # Errors
     /// [`Error::Pass`] where more dispatches do not help, or are too many.
@@ -99,26 +101,35 @@ impl Calls {
             return Ok(None);
         };
         let mut raised = self;
+        let mut is_fed = true;
         for pass in Carried::ALL {
             let (calls, at) = (self.of(pass), pass as usize);
             let error = |problem: String| {
                 Err(Error::Pass { pass: pass.as_str().to_owned(), problem: format!("{problem}; {}", pass.remedy()) })
             };
-            if found.stuck[at] != 0 {
+            // A list gets further by a link in each dispatch, or waits for one beside it that uses the iterations up.
+            let is_stuck = found.stuck[at] != 0 && pass != Carried::Sort;
+            if is_fed && is_stuck {
                 let pixels = unfinished_pixels(shaders, progress, pass)?;
                 return error(format!(
                     "one step of {pixels} takes more iterations than are allowed (65536, on some devices fewer)"
                 ));
             }
             if found.unfinished[at] == calls {
-                if calls >= MOST_CALLS {
+                if is_fed && calls >= MOST_CALLS {
                     let pixels = unfinished_pixels(shaders, progress, pass)?;
                     return error(format!("{calls} dispatches do not finish {pixels}"));
                 }
                 raised.0[at] = calls.saturating_mul(GROWTH).min(MOST_CALLS);
+                is_fed = false;
             }
         }
-        Ok(Some(raised).filter(|raised| *raised != self))
+        if raised == self {
+            return Ok(None);
+        }
+        // What got no further for want of other passes' work may do so now.
+        update(&progress.unfinished, bytemuck::bytes_of(&UnfinishedBlock::zeroed()))?;
+        Ok(Some(raised))
     }
 }
 

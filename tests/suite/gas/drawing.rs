@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder};
+use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::measure::Paper;
 use fumarole::measure::picture::read_target;
@@ -44,7 +44,7 @@ impl Drawing {
         objects: &[Object],
         number: u32,
     ) -> Self {
-        Self::tried_frame(device, compiler, variant, parameters, objects, number).unwrap()
+        Self::tried_frame(&shaders_by(device, compiler), variant, parameters, objects, number).unwrap()
     }
 
     /// As [`Drawing::of`], or the error of the drawing.
@@ -54,26 +54,26 @@ impl Drawing {
         parameters: &Parameters,
         objects: &[Object],
     ) -> Result<Self, Error> {
-        Self::tried_frame(device, Compiler::Glslang, variant, parameters, objects, 0)
+        Self::tried_frame(&shaders_by(device, Compiler::Glslang), variant, parameters, objects, 0)
     }
 
-    fn tried_frame(
-        device: &Arc<Device>,
-        compiler: Compiler,
+    /// By these shaders.
+    pub fn tried_frame(
+        shaders: &ShaderLibrary,
         variant: Variant,
         parameters: &Parameters,
         objects: &[Object],
         number: u32,
     ) -> Result<Self, Error> {
         parameters.validate().unwrap();
-        let shaders = shaders_by(device, compiler);
-        let mut gas = Gas::new(&shaders, "test", variant, parameters, objects, None).unwrap();
+        let device = shaders.device();
+        let mut gas = Gas::new(shaders, "test", variant, parameters, objects, None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut runs = 0;
         loop {
             runs += 1;
             recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number))?;
-            if gas.settle(&shaders)? {
+            if gas.settle(shaders)? {
                 break;
             }
         }
@@ -91,11 +91,11 @@ impl Drawing {
         let picture = Rgba8::new(view.width(), view.height(), read_image(device, view).unwrap()).unwrap();
         Ok(Drawing {
             radiance,
-            lists: gas.fragments(&shaders).unwrap(),
-            demand: gas.demand(&shaders).unwrap(),
-            tiles: gas.tiles(&shaders).unwrap(),
+            lists: gas.fragments(shaders).unwrap(),
+            demand: gas.demand(shaders).unwrap(),
+            tiles: gas.tiles(shaders).unwrap(),
             lost_pixels: gas.lost_pixels(),
-            evaluations: gas.evaluations(&shaders).unwrap().unwrap_or_default(),
+            evaluations: gas.evaluations(shaders).unwrap().unwrap_or_default(),
             picture,
             runs,
             targets,

@@ -89,7 +89,7 @@ fn comes_nearer_with_its_steps(device: &Arc<Device>, variant: Variant, parameter
 }
 
 /// So many sheets across the view, in no order of depth: all almost clear but the farthest, which is opaque.
-fn sheets(count: usize) -> Vec<Object> {
+pub fn sheets(count: usize) -> Vec<Object> {
     let mut random = Random::new(23);
     let mut depths: Vec<f32> = (1..count).map(|_| random.range(3.0, 7.0)).collect();
     depths.insert(count / 3, 8.0);
@@ -109,7 +109,7 @@ fn sheets(count: usize) -> Vec<Object> {
     vec![object(&clear, 2e-5), object(&opaque, 1.0)]
 }
 
-fn view(width: u32) -> Parameters {
+pub fn view(width: u32) -> Parameters {
     let gas = Volume { center: Vec3::NEG_Z * 5.0, half_extent_m: Vec3::new(9.0, 9.0, 1.0), ..default_volume() };
     let texture = SolidTexture { function: DensityFunction::Constant, ..gas.texture };
     Parameters {

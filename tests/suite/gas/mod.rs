@@ -1,6 +1,7 @@
 //! The paper `gas` on the device: against its oracle, closed forms and laws.
 
 mod cache;
+mod cut;
 mod delta;
 mod density;
 mod drawing;
